@@ -626,7 +626,7 @@ SELECT p.point_id, p.engine, p.scene_name AS scene,
   iif(h1 IS NULL, NULL, (n1 < 40 AND d1 < 0.045 * max(m1, 1 - m1)) OR (n1 < 20 AND d1 < 0.14 * max(m1, 1 - m1) AND d1 > 0.4 * min(m1, 1 - m1))) AS "second_fraction_weak",
   e1 AS "second_fraction_resolution", ifnull(v1, 'not-studied') AS "second_fraction_resolution_verdict",
   m2 AS "fragment_count_mean", d2 AS "fragment_count_sd", d2 / sqrt(n2) AS "fragment_count_se", h2 AS "fragment_count_hw95",
-  m2 - h2 AS "fragment_count_low95", m2 + h2 AS "fragment_count_high95", NULL AS "fragment_count_weak",
+  max(m2 - h2, 0 + 0.0) AS "fragment_count_low95", m2 + h2 AS "fragment_count_high95", NULL AS "fragment_count_weak",
   e2 AS "fragment_count_resolution", ifnull(v2, 'not-studied') AS "fragment_count_resolution_verdict",
   m3 AS "dust_fraction_mean", d3 AS "dust_fraction_sd", d3 / sqrt(n3) AS "dust_fraction_se", h3 AS "dust_fraction_hw95",
   iif(h3 IS NULL, iif(n3 > 1, m3 * pow(0.05, 1.0 / n3), NULL), max(m3 - h3, 0.0)) AS "dust_fraction_low95",
@@ -634,7 +634,7 @@ SELECT p.point_id, p.engine, p.scene_name AS scene,
   iif(h3 IS NULL, NULL, (n3 < 40 AND d3 < 0.045 * max(m3, 1 - m3)) OR (n3 < 20 AND d3 < 0.14 * max(m3, 1 - m3) AND d3 > 0.4 * min(m3, 1 - m3))) AS "dust_fraction_weak",
   e3 AS "dust_fraction_resolution", ifnull(v3, 'not-studied') AS "dust_fraction_resolution_verdict",
   m4 AS "mean_fragment_mass_mean", d4 AS "mean_fragment_mass_sd", d4 / sqrt(n4) AS "mean_fragment_mass_se", h4 AS "mean_fragment_mass_hw95",
-  m4 - h4 AS "mean_fragment_mass_low95", m4 + h4 AS "mean_fragment_mass_high95", NULL AS "mean_fragment_mass_weak",
+  max(m4 - h4, 0 + 0.0) AS "mean_fragment_mass_low95", m4 + h4 AS "mean_fragment_mass_high95", NULL AS "mean_fragment_mass_weak",
   e4 AS "mean_fragment_mass_resolution", ifnull(v4, 'not-studied') AS "mean_fragment_mass_resolution_verdict"
 FROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id
   LEFT JOIN width s ON s.point_id = t.point_id AND s.results_version = t.results_version

@@ -7,18 +7,18 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, exponents, has, newest} from './stores.js';
-import {inUnit, isShare, label, marked, number, plural, shell, shellFile, withInterval} from './words.js';
+import {inUnit, label, marked, number, plural, rangeOf, shell, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
 function statistics(from, quantity) {
   if (quantity === 'beta') return exponents(from);
-  const share = isShare(state.stores, quantity);
+  const range = rangeOf(state.stores, quantity);
   const rows = from.quantities.main.includes(quantity) ? ask(from, questions.mainStatistics(quantity))
     : has(from, 'means') ? ask(from, questions.otherStatistics, {quantity}) : ask(from, questions.statisticsOfRuns(quantity));
   const withheld = new Map(doubtsOf(from, quantity).map((row) => [row.point_id, row.withheld]));
   const values = (row) => row.n - (from.quantities.main.includes(quantity) ? withheld.get(row.point_id) ?? 0 : 0);
-  return newest(rows.map((row) => ({...row, ...interval(row.mean, row.sd, values(row), share)})));
+  return newest(rows.map((row) => ({...row, ...interval(row.mean, row.sd, values(row), range)})));
 }
 
 function doubtsOf(from, quantity) {

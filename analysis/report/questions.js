@@ -6,7 +6,7 @@ export const name = (text) => `"${String(text).replaceAll('"', '""')}"`;
 export const tables = 'SELECT name FROM sqlite_schema';
 export const columns = 'SELECT name FROM pragma_table_info(:table)';
 export const facts = 'SELECT name, value FROM fact';
-export const labels = 'SELECT column_name, label, unit, factor, share FROM label';
+export const labels = 'SELECT column_name, label, unit, factor, share, least, most FROM label';
 export const units = `SELECT column_name, min(unit) AS unit FROM column_doc WHERE unit <> '1'
   GROUP BY column_name HAVING count(DISTINCT unit) = 1`;
 export const axes = 'SELECT column_name, path, unit, meaning FROM axis ORDER BY path';

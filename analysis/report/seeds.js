@@ -7,7 +7,7 @@ import {nameOf, whereOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {summary} from './statistics.js';
 import {ask, has} from './stores.js';
-import {between, isShare, label, marked, number, plural, shellFile, withInterval} from './words.js';
+import {between, label, marked, number, plural, rangeOf, shellFile, withInterval} from './words.js';
 
 function valuesOf(from, point, quantity) {
   const rows = ask(from, questions.values(quantity), {point: point.point_id});
@@ -55,7 +55,7 @@ export async function showSeeds() {
   const x = {field: 'low', type: 'quantitative', title, scale: {zero: false, nice: false}, axis: {tickCount: 6, labelOverlap: true, format: `.${digits}~g`}};
   const y = {field: 'runs', type: 'quantitative', title: 'runs', axis: {tickMinStep: 1, format: 'd'}};
   const whole = new Map(cells(from, quantity).map((cell) => [cell.point_id, cell]));
-  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, isShare(state.stores, quantity)), all: apart ? whole.get(sample.point.point_id) : null}));
+  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, rangeOf(state.stores, quantity)), all: apart ? whole.get(sample.point.point_id) : null}));
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend: names.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null};
   const dash = {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend: colour.legend};
   const shape = names.length > 1

@@ -13,7 +13,8 @@ export function student(degrees) {
 }
 
 // The 95 % interval of a mean, as clast makes it; the numbers and their reasons are in analysis/statistics/statistics.h.
-export function interval(mean, sd, n, share = false) {
+// range: the label of a result, with its least and largest value.
+export function interval(mean, sd, n, {share = 0, least = null, most = null} = {}) {
   const none = {hw95: null, low95: null, high95: null, weak: null};
   if (!(n > 1) || sd === null) return none;
   if (!(sd > 1e-14 * Math.abs(mean))) {
@@ -21,7 +22,8 @@ export function interval(mean, sd, n, share = false) {
     return share ? {...none, low95: mean * seen, high95: 1 - (1 - mean) * seen} : none;
   }
   const student95 = (student(n - 1) * sd) / Math.sqrt(n);
-  if (!share) return {hw95: student95, low95: mean - student95, high95: mean + student95, weak: null};
+  if (!share)
+    return {hw95: student95, low95: Math.max(mean - student95, least ?? -Infinity), high95: Math.min(mean + student95, most ?? Infinity), weak: null};
   const near = Math.min(mean, 1 - mean), far = Math.max(mean, 1 - mean);
   const skew = Math.min(Math.sqrt(n), sd / Math.max(near, 1e-300)) * Math.min(1, Math.sqrt(25 / n));
   const hw95 = student95 * (1 + 0.375 * skew);
@@ -35,7 +37,7 @@ export function quantile(sorted, p) {
   return below + 1 < sorted.length ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]) : sorted[below];
 }
 
-export function summary(values, share = false) {
+export function summary(values, range = {}) {
   const n = values.length;
   const largest = values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
   const ordinary = largest === 0 || (largest > 1e-60 && largest < 1e60);
@@ -43,7 +45,7 @@ export function summary(values, share = false) {
   const mean = values.reduce((sum, value) => sum + value * scale, 0) / n / scale;
   const sd = n > 1 ? Math.sqrt(values.reduce((sum, value) => sum + ((value - mean) * scale) ** 2, 0) / (n - 1)) / scale : null;
   const sorted = Float64Array.from(values).sort();
-  return {n, mean, sd, ...interval(mean, sd, n, share), least: sorted[0], quarter: quantile(sorted, 0.25), median: quantile(sorted, 0.5),
+  return {n, mean, sd, ...interval(mean, sd, n, range), least: sorted[0], quarter: quantile(sorted, 0.25), median: quantile(sorted, 0.5),
     threeQuarters: quantile(sorted, 0.75), largest: sorted[n - 1]};
 }
 

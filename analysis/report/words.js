@@ -40,13 +40,21 @@ export function between(value, low, high) {
   return `${fixed(value, places)} (${fixed(low, places)} to ${fixed(high, places)})`;
 }
 
+// "0.11 (0 to 0.27)": an interval that ends with the range of its result (campaign/terminal/uncertainty.c).
+function cutInterval(mean, low, high) {
+  const decade = lastDecade(Math.max(high - mean, mean - low)), last = mean < 2 * 10 ** decade ? decade - 1 : decade;
+  const size = Math.max(Math.abs(low), Math.abs(high)), step = 10 ** last;
+  if (Math.abs(last) > 15 || size < 1e-3 || size >= 1e15) return `${number(mean, 2)} (${number(low, 2)} to ${number(high, 2)})`;
+  const shown = (value) => (last > 0 ? String(step * Math.round(value / step)) : fixed(value, -last));
+  const end = (value) => (value === 0 || value === 1 ? String(value) : shown(value));
+  return `${shown(mean)} (${end(low)} to ${end(high)})`;
+}
+
 // A mean with its interval; of equal shares, what they bound.
 export function withInterval({mean, hw95, low95, high95, weak}) {
   if (hw95 === null && typeof low95 === 'number') return `${number(mean)} (all equal to 14 digits: ${number(low95, 3)} to ${number(high95, 3)})`;
-  const cut = typeof low95 === 'number' && hw95 > 0 && (low95 - (mean - hw95) > 1e-6 || mean + hw95 - high95 > 1e-6);
-  const last = cut && lastDecade(Math.max(high95 - mean, mean - low95)), places = mean < 2 * 10 ** last ? 1 - last : -last;
-  const told = cut ? `${fixed(mean, places)} (${low95 > 0 ? fixed(low95, places) : 0} to ${high95 < 1 ? fixed(high95, places) : 1})` : withError(mean, hw95); // a share
-  return told + (weak ? ' (weak)' : '');
+  const cut = typeof low95 === 'number' && hw95 > 0 && Math.max(low95 - (mean - hw95), mean + hw95 - high95) > 1e-6 * hw95; // by the result's range
+  return (cut ? cutInterval(mean, low95, high95) : withError(mean, hw95)) + (weak ? ' (weak)' : '');
 }
 
 // A number that rests on runs in doubt has a "!"; where the values of some are withheld, also the number of the others.
@@ -58,8 +66,8 @@ export const plural = (count, word) => `${count} ${word}${count === 1 ? '' : 's'
 // gives them in, and one of it is `factor` in SI.
 const named = (stores, column) => stores.map((store) => store.labels.get(column)).find(Boolean);
 
-// A result between 0 and 1.
-export const isShare = (stores, column) => Boolean(named(stores, column)?.share);
+// The values that a result can have: share, least, most.
+export const rangeOf = (stores, column) => named(stores, column) ?? {};
 
 // The column in SI by its own words.
 export function plain(stores, column) {

@@ -97,6 +97,23 @@ void sample_of_share(struct sample_summary *summary, double level) {
                    deviation > SAMPLE_EDGE_SKEW * near);
 }
 
+struct sample_range sample_range(const struct field *row) {
+  if (!row || !field_is_number(row))
+    return (struct sample_range){-HUGE_VAL, HUGE_VAL, false};
+  return (struct sample_range){row->minimum, row->maximum, field_is_share(row)};
+}
+
+void sample_in_range(struct sample_summary *summary, const struct sample_range *range, double level) {
+  if (range->share) {
+    sample_of_share(summary, level);
+    return;
+  }
+  if (isnan(summary->half_width))
+    return;
+  summary->low = fmax(summary->low, range->least);
+  summary->high = fmin(summary->high, range->most);
+}
+
 /* Computes the mean first, then the deviations from it. */
 static struct sample_moments moments_in_two_passes(size_t n, const double *values) {
   struct sample_moments moments = {0};

@@ -41,7 +41,7 @@ struct sample_summary {
   double mean, standard_deviation, standard_error;
   double half_width; /* of the confidence interval of the mean, by Student's t. NaN: the values are equal (or differ by
                         rounding, SAMPLE_ROUNDING of their size), which says nothing of how far the mean may be off */
-  double low, high;  /* the interval. A share: within 0 and 1, and a bound also when all values are equal */
+  double low, high;  /* the interval. In sample_range: within it. A share: a bound also when all values are equal */
   bool weak;         /* a share only: few runs, of a kind whose interval often misses the mean */
 };
 #define SAMPLE_ROUNDING     1e-14
@@ -64,6 +64,16 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
  *   out of the interval: with fewer than SAMPLE_NARROW_RUNS runs when s is below SAMPLE_NARROW of the distance from the
  *   far end; with fewer than SAMPLE_EDGE_RUNS when s is below SAMPLE_EDGE of it and above SAMPLE_EDGE_SKEW e. */
 void sample_of_share(struct sample_summary *summary, double level);
+
+/* The values that a quantity can have: HUGE_VAL is no end. */
+struct sample_range {
+  double least, most;
+  bool share; /* field_is_share() */
+};
+struct sample_range sample_range(const struct field *row); /* NULL: any values */
+/* Ends the interval of a mean where the values end, which the mean cannot pass: it holds the mean as often as before.
+ * The half width stays. Of a share it is sample_of_share(). */
+void sample_in_range(struct sample_summary *summary, const struct sample_range *range, double level);
 #define SAMPLE_SKEW      0.375
 #define SAMPLE_SKEW_RUNS 25
 #define SAMPLE_NARROW    0.045

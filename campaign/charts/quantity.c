@@ -458,13 +458,13 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
 }
 
 /* Decimals of a value in tables, below -1: its digits, -1: three of them. */
-static int decimals_of(const struct row *row, bool share) {
+static int decimals_of(const struct row *row, const struct sample_range *range) {
   char text[UNCERTAINTY_TEXT];
   if (!(row->half_width > 0))
     return row->decimals;
   if (!(row->half_width < 10))
     return -1;
-  (share ? uncertainty_share_cell : uncertainty_number)(row->value, row->half_width, text);
+  uncertainty_cell(row->value, row->half_width, range, text);
   text[strcspn(text, " ")] = '\0';
   const int decimals = strchr(text, '.') ? (int)strlen(strchr(text, '.') + 1) : 0;
   return text[0] == '(' ? -1 - decimals : decimals; /* (2.5 +- 0.1)e-05 */
@@ -495,6 +495,7 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
   double widest = 0; /* half width of the widest interval, in the quantity's unit; 0: there is none */
   size_t count = 0;
   struct panels panels = {0};
+  const struct sample_range range = views_range(quantity->name);
   for (size_t r = 0; r < quantity->count; r++) {
     const struct row *row = &quantity->row[r];
     size_t panel;
@@ -510,7 +511,7 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
                                           .y = row->input[1],
                                           .value = row->value,
                                           .doubtful = row->doubtful,
-                                          .decimals = decimals_of(row, views_is_share(quantity->name)),
+                                          .decimals = decimals_of(row, &range),
                                           .panel = panel};
     if (isfinite(row->value) && row->half_width > 0) /* of a share within 0 and 1 the larger distance to an end */
       widest = fmax(widest, fmax(row->upper - row->value, row->value - row->lower));

@@ -180,8 +180,8 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT];
   charts_label(study->quantity[quantity].name, label);
   struct sample_summary mean = sample_summarise((size_t)ladder->seeds, ladder->values[quantity][level], 0.95);
-  if (field && field_is_share(field))
-    sample_of_share(&mean, 0.95);
+  const struct sample_range range = sample_range(field);
+  sample_in_range(&mean, &range, 0.95);
   uncertainty_seeds(&mean, text);
   if (!told->base)
     fprintf(out, "%s = %s: ", told->knob, told->setting);

@@ -132,6 +132,7 @@ struct bin {
 /* Pools the runs, in order of the input, into at most `BINS` + 1 bins of whole places. */
 static status make_bins(const struct find *find, struct bin *bins, size_t *count, struct error *error) {
   OWNED double(*pairs)[3] = NULL;
+  const struct sample_range range = sample_range(find->quantity.row);
   OWNED double *values = NULL;
   size_t n = 0;
   TRY(memory_array(&pairs, find->runs, sizeof *pairs, "the runs of a search", error));
@@ -157,8 +158,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
       bin->doubts.doubtful += pairs[k][2] > 0;
     }
     bin->mean = sample_summarise(in, values, 0.95);
-    if (field_is_share(find->quantity.row))
-      sample_of_share(&bin->mean, 0.95);
+    sample_in_range(&bin->mean, &range, 0.95);
     from = i + 1;
   }
   return STATUS_OK;
@@ -168,6 +168,7 @@ static status print_bins(const struct find *find, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
   bool any_weak = false;
+  const struct sample_range range = sample_range(find->quantity.row);
   char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 8], above[128];
   TRY(make_bins(find, bins, &count, error));
   show_level(find, text);
@@ -180,8 +181,7 @@ static status print_bins(const struct find *find, struct error *error) {
     table_text(table, find_show_within(find, bins[i].low, 0, 0.1, text));
     table_text(table, find_show_within(find, bins[i].high, 0, 0.1, text));
     table_integer(table, (int64_t)bins[i].n);
-    const bool share = field_is_share(find->quantity.row);
-    (share ? uncertainty_share_cell : uncertainty_number)(bins[i].mean.mean, bins[i].mean.half_width, mean);
+    uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, &range, mean);
     any_weak |= bins[i].mean.weak;
     if (bins[i].mean.weak)
       text_append(mean, sizeof mean, "~");

@@ -117,7 +117,7 @@ static void mean_cell(struct printing *printing, const struct ask_points_row *ro
   if (row->mean >= 1 && isnan(row->half_width) && isfinite(row->low))
     snprintf(text, sizeof text, "%.3f \xe2\x89\xa5 %.3f", row->mean, row->low);
   else
-    uncertainty_share_cell(row->mean, row->half_width, text);
+    uncertainty_cell(row->mean, row->half_width, &(struct sample_range){0, 1, true}, text);
   seen->all_one |= strstr(text, "\xe2\x89\xa5") != NULL;
   seen->ends |= strchr(text, '(') != NULL;
   seen->interval |= strstr(text, "\xc2\xb1") != NULL;
@@ -268,7 +268,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   if (!table_for_people(format))
     return STATUS_OK;
   fflush(stdout); /* what follows comes below the table */
-  if (idle)
+  if (idle && legend)
     fprintf(stderr, "clast: left out: %zu point%s without runs (--csv and --json have %s)\n", idle,
             idle == 1 ? "" : "s", idle == 1 ? "it" : "them");
   const struct ask_doubts_choice doubts = {.campaign = choice->campaign};

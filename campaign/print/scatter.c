@@ -37,8 +37,8 @@ static void row(const struct printing *printing, const char *name, double value,
 static void print_runs_needed(const struct printing *printing, const struct sample_summary *mean) {
   const struct scatter_choice *choice = printing->choice;
   const double wanted = choice->half_width * (choice->relative ? fabs(mean->mean) : 1);
-  const size_t runs = printing->pools->share ? scatter_runs_of_share(mean->mean, mean->standard_deviation, wanted)
-                                             : scatter_runs_needed(mean->standard_deviation, wanted);
+  const size_t runs = printing->pools->range.share ? scatter_runs_of_share(mean->mean, mean->standard_deviation, wanted)
+                                                   : scatter_runs_needed(mean->standard_deviation, wanted);
   const size_t by_rule = scatter_runs_of_rule(mean->standard_deviation, wanted);
   row(printing, "runs needed", runs ? (double)runs : (double)NAN, NAN, NAN);
   row(printing, "runs needed, seeds.until", by_rule ? (double)by_rule : (double)NAN, NAN, NAN);
@@ -47,8 +47,7 @@ static void print_runs_needed(const struct printing *printing, const struct samp
 static void print_scatter(const struct printing *printing, struct scatter *s) {
   static const char *const names[SCATTER_QUANTILES] = {"q05", "q25", "median", "q75", "q95"};
   const double deviation = s->mean.standard_deviation;
-  if (printing->pools->share)
-    sample_of_share(&s->mean, 0.95);
+  sample_in_range(&s->mean, &printing->pools->range, 0.95);
   row(printing, "runs", (double)s->n, NAN, NAN);
   row(printing, printing->people && s->mean.weak ? "mean (weak: few runs)" : "mean", s->mean.mean, s->mean.low,
       s->mean.high);

@@ -546,8 +546,8 @@ static void tick(void *context, int running, bool last) {
   const uint64_t open_points = summary->points - summary->points_done;
   const bool rated = elapsed > 0 && driver->started_done > 0;
   struct sample_summary mean = sample_summarise_moments(&driver->moments, 0.95);
-  if (field_is_share(driver->row))
-    sample_of_share(&mean, 0.95);
+  const struct sample_range range = sample_range(driver->row);
+  sample_in_range(&mean, &range, 0.95);
   if (points > 1) /* the interval is one of a single point's seeds */
     mean.half_width = mean.low = mean.high = NOTHING;
   const int64_t least = (int64_t)points * campaign_replicates_least(driver->campaign), /* as `plan` tells it */

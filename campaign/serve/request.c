@@ -302,8 +302,8 @@ struct serve_answer serve_request_answer(const struct serve_request *request, co
     json_array_append_new(output, vector);
     for (size_t k = 0; k < config->result_count; k++) {
       struct sample_summary summary = sample_summarise(count, values + k * count, 0.95);
-      if (field_is_share(config->results[k].row))
-        sample_of_share(&summary, 0.95);
+      const struct sample_range range = sample_range(config->results[k].row);
+      sample_in_range(&summary, &range, 0.95);
       const double number = config->single ? values[k] : statistic_of(&summary, config->statistics[v]);
       if (!isfinite(number)) { /* JSON has no NaN and no infinity */
         OWNED char *sentences = sentences_of(&doubts[k]);

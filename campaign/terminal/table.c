@@ -22,7 +22,8 @@ enum {
   COLUMNS_MAXIMUM = 2000, /* SQLite's own limit on columns is 2000 */
   WIDTH = 100,            /* of a table for people, where stdout is no terminal */
   GAP = 2,                /* between columns */
-  TEXT_LEAST = 24,        /* a column of texts is not made narrower than this */
+  TEXT_LEAST = 24,        /* a column of texts is not made narrower than this, */
+  PATH_MOST = 40,         /* nor than a path in it of up to this width */
 };
 
 enum role {
@@ -80,13 +81,13 @@ struct column {
   enum role role;
   double factor; /* people see numbers over this */
   size_t value;  /* of an ERROR: the column of its value */
-  size_t narrow;
-  size_t width;     /* in the table for people, characters */
-  bool text;        /* aligned left */
-  bool marked;      /* a number has a mark behind it; the others leave its room free */
-  bool share;       /* of an ERROR: its value is between 0 and 1 */
-  bool left_out;    /* people do not see it */
-  const char *rest; /* of the text that is being printed */
+  size_t narrow, path;
+  size_t width;              /* in the table for people, characters */
+  bool text;                 /* aligned left */
+  bool marked;               /* a number has a mark behind it; the others leave its room free */
+  struct sample_range range; /* of an ERROR: the values that its value can have */
+  bool left_out;             /* people do not see it */
+  const char *rest;          /* of the text that is being printed */
 };
 
 struct table {
@@ -118,7 +119,7 @@ struct table *table_new(enum table_format format, FILE *out) {
 }
 
 bool table_for_people(enum table_format format) {
-  return format == TABLE_TEXT || format == TABLE_ALL;
+  return format == TABLE_TEXT || format == TABLE_BARE || format == TABLE_ALL;
 }
 
 bool table_broken(const struct table *table) {
@@ -199,10 +200,9 @@ void table_column(struct table *table, const char *name, const char *unit) {
   if (column->role == ERROR) {
     char value[256];
     snprintf(value, sizeof value, "%s", columns[column->value].name);
-    char *end = strstr(value, "_mean");
-    if (end)
-      *end = '\0';
-    column->share = views_is_share(value);
+    if (ends_in(value, "_mean"))
+      value[strlen(value) - strlen("_mean")] = '\0';
+    column->range = views_range(value);
   }
   if (column->role == ERROR && ends_in(columns[column->value].name, "_mean")) { /* "x" is enough above "1 +- 0.1" */
     char *end = strstr(columns[column->value].head, "_mean");
@@ -243,14 +243,17 @@ static bool is_joint(const char *at) {
   return at[0] == '_' && !(at[1] >= '0' && at[1] <= '9');
 }
 
-/* Bytes of the first line of a text: it breaks before a blank or behind "_", else anywhere. */
-static size_t line_of(const char *text, size_t width) {
+/* Bytes of the first line of a text: it breaks before a blank or behind "_", else anywhere. `whole`: behind "_" only
+ * where the line has no blank, as the words of a cell are paths and commands. */
+static size_t line_of(const char *text, size_t width, bool whole) {
   size_t at = 0, broken = 0;
+  bool blank = false;
   for (size_t used = 0; text[at]; at++) {
     used += (text[at] & 0xC0) != 0x80;
     if (used > width + (text[at] == ' '))
       return broken ? broken : at;
-    if (text[at] == ' ' || (is_joint(text + at) && used <= width))
+    blank |= text[at] == ' ';
+    if (text[at] == ' ' || (is_joint(text + at) && used <= width && !(whole && blank)))
       broken = at + (text[at] == '_');
   }
   return at;
@@ -294,6 +297,18 @@ static size_t total_width(const struct table *table) {
   return total ? total - GAP : 0;
 }
 
+/* The widest path of a text, such as target.material.porosity.curve, but not beyond PATH_MOST. */
+static size_t widest_path(const char *text) {
+  size_t widest = 0;
+  for (size_t length; *text; text += length + (text[length] == ' ')) {
+    length = strcspn(text, " ");
+    const bool path = memchr(text, '.', length) && length > 0 && text[length - 1] != '.';
+    const size_t width = path ? text_characters(text, length) : 0;
+    widest = width > widest && width <= PATH_MOST ? width : widest;
+  }
+  return widest;
+}
+
 /* Width of a column by its cells and its heading, and by its cells and the words of its heading. */
 static void measure(struct table *table, size_t c) {
   struct column *column = &table->columns[c];
@@ -307,6 +322,8 @@ static void measure(struct table *table, size_t c) {
     const size_t width = width_of(table->kept[i].text) + room_of_mark(column, &table->kept[i]);
     column->width = width > column->width ? width : column->width;
     column->narrow = width > column->narrow ? width : column->narrow;
+    const size_t path = column->text ? widest_path(table->kept[i].text) : 0;
+    column->path = path > column->path ? path : column->path;
   }
 }
 
@@ -316,7 +333,7 @@ static struct column *widest(const struct table *table, bool texts) {
   size_t most = 0;
   for (size_t c = 0; c < table->column_count; c++) {
     struct column *column = &table->columns[c];
-    const size_t least = texts ? TEXT_LEAST : column->narrow;
+    const size_t least = !texts ? column->narrow : column->path > TEXT_LEAST ? column->path : TEXT_LEAST;
     if (column->left_out || (texts && !column->text) || column->width <= least + most)
       continue;
     best = column;
@@ -350,13 +367,13 @@ static void lay_out(struct table *table) {
   for (size_t c = 0; c < table->column_count; c++) {
     struct column *column = &table->columns[c];
     column->left_out = column->role == ERROR ||
-                       (table->format == TABLE_TEXT && (column->role == RARE || is_quiet(table, c)));
+                       (table->format != TABLE_ALL && (column->role == RARE || is_quiet(table, c)));
     if (c == 0 && column->role == PLAIN)
       column->role = KEY;
     measure(table, c);
   }
   make_narrow(table, room);
-  if (table->format == TABLE_TEXT)
+  if (table->format != TABLE_ALL)
     for (size_t c = table->column_count; c-- > 1 && total_width(table) > room;)
       table->columns[c].left_out |= table->columns[c].role != KEY && table->columns[c].role != MEAN;
 }
@@ -376,7 +393,7 @@ static void print_lines(struct table *table, size_t count, const size_t *list, c
     for (size_t i = 0; i < count; i++) {
       struct column *column = &table->columns[list[i]];
       const char *const text = column->rest;
-      const size_t bytes = row && !column->text ? strlen(text) : line_of(text, column->width);
+      const size_t bytes = row && !column->text ? strlen(text) : line_of(text, column->width, row != NULL);
       const size_t mark = row && *text ? room_of_mark(column, &row[list[i]]) : 0;
       const size_t width = text_characters(text, bytes) + mark, gap = column->width > width ? column->width - width : 0;
       if (bytes)
@@ -578,7 +595,7 @@ static void keep(struct table *table, const struct cell *cell) {
     replace(table, value, text, value->digits);
     return;
   }
-  (column->share ? uncertainty_share_cell : uncertainty_number)(value->number, cell->number, number);
+  uncertainty_cell(value->number, cell->number, &column->range, number);
   snprintf(text, sizeof text, "%s%.*s", number, UNCERTAINTY_TEXT, value->text + value->digits);
   replace(table, value, text, strlen(number));
 }
@@ -617,6 +634,7 @@ static void add_cell(struct table *table, struct cell cell) {
   case TABLE_JSON:
   case TABLE_JSON_LINES: print_json(table, &cell); break;
   case TABLE_TEXT:
+  case TABLE_BARE:
   case TABLE_ALL: keep(table, &cell); break;
   }
   table->mark[0] = 0;
@@ -759,7 +777,7 @@ status table_end(struct table *table, struct error *error) {
     errno = 0;
     (void)fflush(table->out); /* sets the stream's error flag */
     check_output(table);
-    if (table->people && !table->broken)
+    if (table->people && !table->broken && table->format != TABLE_BARE)
       tell_left_out(table);
   }
   table->ended = true;

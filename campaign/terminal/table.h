@@ -9,12 +9,11 @@
  * The table for people has one rule, whatever it shows. It is 100 characters wide at most (on a terminal, as wide as
  * that; COLUMNS says otherwise). Columns that tell rows apart always stand in it: varied inputs and numbers of points.
  * The half width of an interval (NAME_hw95) stands in the cell of its value, as "0.349 ± 0.003"; both have the
- * digits that it allows; a share has its interval instead where the half width passes 0 or 1. Other numbers
- * have five digits. Units are in the
- * headings. If the table is too wide, headings get several lines, then texts, then it leaves columns out, the last ones
- * first. It also leaves out columns that are rarely wanted, and those that have the same cell in all rows (engine,
- * failed: table.c names them). A note on stderr names what is left out. With --all nothing is; the table has several
- * parts if need be. */
+ * digits that it allows; a value that has a range, such as a share, has its interval instead where the half width
+ * passes an end of it. Other numbers have five digits. Units are in the headings. If the table is too wide, headings
+ * get several lines, then texts, then it leaves columns out, the last ones first. It also leaves out columns that are
+ * rarely wanted, and those that have the same cell in all rows (engine, failed: table.c names them). A note on stderr
+ * names what is left out. With --all nothing is; the table has several parts if need be. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
 #define CLAST_CAMPAIGN_TERMINAL_TABLE_H
 
@@ -24,8 +23,9 @@
 
 #include "db/ask/ask.h"
 
-enum table_format { TABLE_TEXT, TABLE_ALL, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
-bool table_for_people(enum table_format format); /* TABLE_TEXT, or with all columns */
+/* TABLE_BARE: as TABLE_TEXT, without a remark on stderr on columns that are not shown (--quiet). */
+enum table_format { TABLE_TEXT, TABLE_BARE, TABLE_ALL, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
+bool table_for_people(enum table_format format); /* TABLE_TEXT, TABLE_BARE, or with all columns */
 
 struct table;
 
@@ -95,8 +95,8 @@ enum { UNCERTAINTY_TEXT = 400 };
  * width above 0: "0.349". Below 0.001: "(3.3 ± 0.2)e-05". */
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
-/* The same of a share: "0.11 (0 to 0.27)", its interval, where the half width passes 0 or 1. */
-void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]);
+/* The same with the interval, "0.11 (0 to 0.27)", where the half width passes an end of the range. */
+void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]);
 
 /* Says on stderr that so many runs of a store are excluded; nothing for 0. */
 void uncertainty_excluded(int64_t count, const char *store);

@@ -44,20 +44,37 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
            decimals, step > 0 ? step * round(half_width / step) : half_width);
 }
 
-void uncertainty_share_cell(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
-  const double low = fmax(value - half_width, 0), high = fmin(value + half_width, 1);
-  if (!(half_width > 0) || (value - half_width >= 0 && value + half_width <= 1) || !(value >= 0 && value <= 1)) {
+/* "0.27", or "270" where the last digit is in the tens. */
+static void write_to(double last, double number, char text[32]) {
+  const double step = pow(10, last);
+  snprintf(text, 32, "%.*f", last < 0 ? (int)-last : 0, last > 0 ? step * round(number / step) : number);
+}
+
+/* The same of an end of a range, which is exact: "0" or "1". */
+static void write_end(double last, double end, char text[32]) {
+  write_to(end == 0 || end == 1 ? 0 : last, end, text);
+}
+
+void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]) {
+  const double low = fmax(value - half_width, range->least), high = fmin(value + half_width, range->most);
+  const bool cut = value - half_width < range->least || value + half_width > range->most;
+  if (!(half_width > 0) || !cut || !(value >= range->least && value <= range->most)) {
     uncertainty_number(value, half_width, text);
     return;
   }
+  const double size = fmax(fabs(low), fabs(high));
   double last = last_decade(fmax(high - value, value - low));
   if (value < 2 * pow(10, last)) /* 0.14 (0 to 1), not 0.1 */
     last--;
-  const int decimals = (int)fmin(-last, MOST_DECIMALS);
-  char ends[2][32];
-  snprintf(ends[0], sizeof ends[0], low > 0 ? "%.*f" : "0", decimals, low);
-  snprintf(ends[1], sizeof ends[1], high < 1 ? "%.*f" : "1", decimals, high);
-  snprintf(text, UNCERTAINTY_TEXT, "%.*f (%s to %s)", decimals, value, ends[0], ends[1]);
+  if (last < -MOST_DECIMALS || last > MOST_DECIMALS || size < SMALL || size >= MOST_DIGITS) {
+    snprintf(text, UNCERTAINTY_TEXT, "%.2g (%.2g to %.2g)", value, low, high);
+    return;
+  }
+  char parts[3][32];
+  write_to(last, value, parts[0]);
+  write_end(last, low, parts[1]);
+  write_end(last, high, parts[2]);
+  snprintf(text, UNCERTAINTY_TEXT, "%s (%s to %s)", parts[0], parts[1], parts[2]);
 }
 
 void uncertainty_excluded(int64_t count, const char *store) {
@@ -84,7 +101,7 @@ void uncertainty_seeds(const struct sample_summary *mean, char text[UNCERTAINTY_
     return;
   }
   if (mean->high > mean->low && (mean->low > mean->mean - half_width || mean->high < mean->mean + half_width)) {
-    uncertainty_share_cell(mean->mean, half_width, text);
+    uncertainty_cell(mean->mean, half_width, &(struct sample_range){mean->low, mean->high, false}, text);
     char *end = strchr(text, ')');
     if (end) {
       *end = '\0';

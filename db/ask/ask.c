@@ -31,13 +31,27 @@ double ask_campaign_silence(struct store *store) {
   return seconds;
 }
 
-bool ask_campaign_shared(struct store *store) {
-  double points = 0;
-  return answer_number(
-             store, &points, NULL,
-             "SELECT count(*) FROM (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) GROUP BY "
-             "point_id HAVING count(DISTINCT name) > 1)") == STATUS_OK &&
-         points > 0;
+void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *shared, int64_t *runs) {
+  struct error error;
+  *earlier = *shared = *runs = 0;
+  ANSWER answer = answer_to(
+      store, &error,
+      "WITH earlier AS (SELECT campaign_id FROM campaign WHERE EXISTS (SELECT 1 FROM campaign AS later WHERE "
+      "later.name "
+      "= campaign.name AND later.campaign_id > campaign.campaign_id AND NOT EXISTS (SELECT 1 FROM campaign_point AS p "
+      "WHERE p.campaign_id = campaign.campaign_id AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q "
+      "WHERE "
+      "q.campaign_id = later.campaign_id)))),\n"
+      "shared AS (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE campaign_id NOT IN "
+      "earlier GROUP BY point_id HAVING count(DISTINCT iif(%s, name, campaign_id)) > 1)\n"
+      "SELECT (SELECT count(*) FROM earlier JOIN campaign USING (campaign_id) WHERE NOT %s), (SELECT count(*) FROM "
+      "shared), (SELECT count(*) FROM run WHERE point_id IN (SELECT point_id FROM campaign_point))",
+      CAMPAIGN_IS_ROUND, CAMPAIGN_IS_ROUND);
+  if (!answer_next(&answer))
+    return;
+  *earlier = answer_integer(&answer, 0);
+  *shared = answer_integer(&answer, 1);
+  *runs = answer_integer(&answer, 2);
 }
 
 int64_t ask_campaign_levels(struct store *store) {

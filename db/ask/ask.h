@@ -50,7 +50,9 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error);
 /* Seconds since the store had its last sign of life: a run was stored, or a session began. NaN: none is known. */
 double ask_campaign_silence(struct store *store);
-bool ask_campaign_shared(struct store *store); /* have campaigns of several names the same point? */
+/* The earlier forms of campaigns (ask_campaign_progress()), the points that several other campaigns have, not those of
+ * one search or study alone, and the runs of all campaigns, each once. 0 where the store does not tell. */
+void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *shared, int64_t *runs);
 /* Number of chosen points that only a study (clast converge) or a search (find, fit) has. */
 int64_t ask_campaign_levels(struct store *store);
 
@@ -229,7 +231,7 @@ struct ask_points_row {
   int64_t n, failed;       /* runs that count; runs that failed */
   double mean;             /* of the largest fraction */
   double half_width;       /* of the 95 % interval of this mean. NaN: one run, or all runs are equal */
-  double low, high;        /* the interval, or what equal runs bound (sample_of_share()). NaN: one run */
+  double low, high;        /* the interval, or what equal runs bound (sample_in_range()). NaN: one run */
   bool weak;               /* the interval often misses the mean (sample_of_share()) */
   double resolution;       /* error that the resolution leaves in it; NaN: not known */
   enum ask_resolution_verdict resolution_verdict;
@@ -525,7 +527,7 @@ struct ask_pools {
   struct ask_pool_choice choice;
   bool of_values;
   char quantity[ASK_GROUP_NAME]; /* column of the values */
-  bool share;                    /* they are between 0 and 1 */
+  struct sample_range range;     /* they are within it */
   size_t axes;                   /* of `by`, and their columns */
   char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct ask_pool_member *list;

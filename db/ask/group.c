@@ -221,7 +221,8 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   fputs("engine, results_version, points, n, failed, censored, excluded", out);
   for (size_t i = 0; i < quantities->count; i++) {
     snprintf(units, sizeof units, "u%zu", i);
-    views_statistics_columns(i, quantities->name[i], units, views_is_share(quantities->name[i]), out);
+    const struct sample_range range = views_range(quantities->name[i]);
+    views_statistics_columns(i, quantities->name[i], units, &range, out);
   }
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, ",\n  r%1$zu AS \"%2$s_n\", b%1$zu AS \"%2$s_doubtful\"", i, quantities->name[i]);
@@ -231,7 +232,8 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
     snprintf(units, sizeof units, "u%zu", i);
     snprintf(quantile, sizeof quantile, "t%zu", i);
     fputs(",\n  ", out);
-    views_statistics_half_width(i, units, quantile, views_is_share(quantities->name[i]), out);
+    const struct sample_range range = views_range(quantities->name[i]);
+    views_statistics_half_width(i, units, quantile, &range, out);
   }
   fputs("\nFROM (SELECT *", out);
   for (size_t i = 0; i < quantities->count; i++) {

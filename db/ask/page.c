@@ -145,7 +145,8 @@ enum { COLUMNS = 256, NAME = 128 };
 
 struct column {
   char name[NAME];
-  bool main, share;    /* of the view points; a value between 0 and 1 */
+  bool main; /* of the view points */
+  struct sample_range range;
   bool number, varies; /* has a value; has two values */
   double first;
   struct sample_moments moments; /* of the current point */
@@ -175,8 +176,7 @@ static bool is_main(const char *name) {
 
 static struct sample_summary summary_of(const struct column *column) {
   struct sample_summary summary = sample_summarise_moments(&column->moments, 0.95);
-  if (column->share)
-    sample_of_share(&summary, 0.95);
+  sample_in_range(&summary, &column->range, 0.95);
   return summary;
 }
 
@@ -451,7 +451,7 @@ static status fill_runs(struct reading *reading, struct store *store, struct err
     struct column *column = &reading->column[reading->count++];
     snprintf(column->name, NAME, "%s", answer_text(&names, 0));
     column->main = is_main(column->name);
-    column->share = views_is_share(column->name);
+    column->range = views_range(column->name);
   }
   TRY(answer_end(&names));
   TRY(read_results(reading, store, error));
@@ -590,7 +590,8 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
   TRY(sql_execute(page->store.db,
                   "PRAGMA page_size = 4096;"
                   "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
-                  "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor, share) WITHOUT ROWID;"
+                  "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor, share, least, most) "
+                  "WITHOUT ROWID;"
                   "CREATE TABLE question (name, doc, sql, parameters);"
                   "CREATE TABLE picture (run_id, point_id, quantile, png);"
                   "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
@@ -649,8 +650,13 @@ status ask_page_fact(struct ask_page *page, const char *name, const char *value,
 
 status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
                       struct error *error) {
-  return sql_executef(page->store.db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g, %d)",
-                      column, label, unit, factor, (int)views_is_share(column));
+  const struct sample_range range = views_range(column);
+  return sql_executef(page->store.db, doing, error,
+                      "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g, %d, iif(%d, %!.17g, NULL), iif(%d, "
+                      "%!.17g, NULL))",
+                      column, label, unit, factor, (int)range.share, (int)isfinite(range.least),
+                      isfinite(range.least) ? range.least : 0, (int)isfinite(range.most),
+                      isfinite(range.most) ? range.most : 0);
 }
 
 struct answer ask_page_columns(struct ask_page *page, struct error *error) {

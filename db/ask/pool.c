@@ -193,7 +193,7 @@ static status begin(struct ask_pools *pools, const char *quantity, struct error 
   TRY(ask_register_functions(pools->store, error));
   if (quantity)
     TRY(ask_group_quantity(pools->store, quantity, pools->quantity, error));
-  pools->share = views_is_share(pools->quantity);
+  pools->range = views_range(pools->quantity);
   if (pools->choice.by)
     TRY(ask_group_columns(pools->store, pools->choice.by, LIMITS_AXES_OF_POOL, pools->column, &pools->axes, error));
   return find_members(pools, error);

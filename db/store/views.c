@@ -2,6 +2,7 @@
  * column_doc. Plain SQL of the statistics of points, for the views and for questions. */
 #include "db/store/views.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,19 +22,28 @@ const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "esti
 /* ---- statistics ---- */
 
 /* A column that two engines have begins with the name of its table. */
-static bool is_share(const struct field_table *table, const char *engine, const char *column) {
+static const struct field *row_of(const struct field_table *table, const char *engine, const char *column) {
   char prefix[64];
   snprintf(prefix, sizeof prefix, "result_%s_", engine);
   const size_t length = strlen(prefix);
-  const struct field *row = field_of_column(table, strncmp(column, prefix, length) == 0 ? column + length : column);
-  return row && field_is_share(row);
+  return field_of_column(table, strncmp(column, prefix, length) == 0 ? column + length : column);
 }
 
-bool views_is_share(const char *column) {
-  bool share = is_share(&outcome_table, "", column);
-  for (size_t i = 0; !share && i < engine_count(); i++)
-    share = is_share(engine_at(i)->results, engine_at(i)->name, column);
-  return share;
+struct sample_range views_range(const char *column) {
+  const struct field *row = row_of(&outcome_table, "", column);
+  struct sample_range all = sample_range(row);
+  bool found = row != NULL;
+  for (size_t i = 0; i < engine_count(); i++) {
+    row = row_of(engine_at(i)->results, engine_at(i)->name, column);
+    if (!row)
+      continue;
+    const struct sample_range range = sample_range(row);
+    all.least = found ? fmin(all.least, range.least) : range.least;
+    all.most = found ? fmax(all.most, range.most) : range.most;
+    all.share |= range.share;
+    found = true;
+  }
+  return all;
 }
 
 size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]) {
@@ -57,9 +67,9 @@ void views_statistics_student(const char *degrees, FILE *out) {
           degrees);
 }
 
-void views_statistics_half_width(size_t i, const char *n, const char *t, bool share, FILE *out) {
+void views_statistics_half_width(size_t i, const char *n, const char *t, const struct sample_range *range, FILE *out) {
   fprintf(out, "iif(d%1$zu > %2$g * abs(m%1$zu), %4$s * d%1$zu / sqrt(%3$s)", i, SAMPLE_ROUNDING, n, t);
-  if (share)
+  if (range->share)
     fprintf(out,
             " * (1 + %2$g * min(sqrt(%3$s), d%1$zu / max(min(m%1$zu, 1 - m%1$zu), 1e-300)) * min(1, sqrt(%4$d.0 / "
             "%3$s)))",
@@ -67,12 +77,12 @@ void views_statistics_half_width(size_t i, const char *n, const char *t, bool sh
   fprintf(out, ", NULL) AS h%zu", i);
 }
 
-void views_statistics_columns(size_t i, const char *name, const char *n, bool share, FILE *out) {
+void views_statistics_columns(size_t i, const char *name, const char *n, const struct sample_range *range, FILE *out) {
   fprintf(out,
           ",\n  m%1$zu AS \"%2$s_mean\", d%1$zu AS \"%2$s_sd\", d%1$zu / sqrt(%3$s) AS \"%2$s_se\", h%1$zu AS "
           "\"%2$s_hw95\",\n  ",
           i, name, n);
-  if (share) { /* in parts: fprintf() of 14 values and more asks for memory, and says nothing without it */
+  if (range->share) { /* in parts: fprintf() of 14 values and more asks for memory, and says nothing without it */
     fprintf(out,
             "iif(h%1$zu IS NULL, iif(%3$s > 1, m%1$zu * pow(0.05, 1.0 / %3$s), NULL), max(m%1$zu - h%1$zu, 0.0)) AS "
             "\"%2$s_low95\",\n  ",
@@ -87,9 +97,18 @@ void views_statistics_columns(size_t i, const char *name, const char *n, bool sh
             "(%3$s < %4$d AND d%1$zu < %5$g * max(m%1$zu, 1 - m%1$zu) AND d%1$zu > %6$g * min(m%1$zu, 1 - m%1$zu))) "
             "AS \"%2$s_weak\"",
             i, name, n, SAMPLE_EDGE_RUNS, SAMPLE_EDGE, SAMPLE_EDGE_SKEW);
-  } else
-    fprintf(out, "m%1$zu - h%1$zu AS \"%2$s_low95\", m%1$zu + h%1$zu AS \"%2$s_high95\", NULL AS \"%2$s_weak\"", i,
-            name);
+  } else {
+    if (isfinite(range->least)) /* a real number, also where it is whole */
+      fprintf(out, "max(m%zu - h%zu, %.17g + 0.0)", i, i, range->least);
+    else
+      fprintf(out, "m%zu - h%zu", i, i);
+    fprintf(out, " AS \"%s_low95\", ", name);
+    if (isfinite(range->most))
+      fprintf(out, "min(m%zu + h%zu, %.17g + 0.0)", i, i, range->most);
+    else
+      fprintf(out, "m%zu + h%zu", i, i);
+    fprintf(out, " AS \"%1$s_high95\", NULL AS \"%1$s_weak\"", name);
+  }
   fprintf(out, ",\n  e%1$zu AS \"%2$s_resolution\", ifnull(v%1$zu, 'not-studied') AS \"%2$s_resolution_verdict\"", i,
           name);
 }
@@ -174,7 +193,8 @@ void views_statistics_write(size_t count, const char *const *names, FILE *out) {
     snprintf(n, sizeof n, "n%zu", i);
     snprintf(t, sizeof t, "t%zu", i);
     fputs(",\n    ", out);
-    views_statistics_half_width(i, n, t, views_is_share(names[i]), out);
+    const struct sample_range range = views_range(names[i]);
+    views_statistics_half_width(i, n, t, &range, out);
   }
   fputs("\n  FROM scatter\n)\n", out);
 }
@@ -360,7 +380,8 @@ static void write_points(struct view *view) {
   for (size_t i = 0; i < count; i++) {
     char n[32];
     snprintf(n, sizeof n, "n%zu", i);
-    views_statistics_columns(i, names[i], n, views_is_share(names[i]), out);
+    const struct sample_range range = views_range(names[i]);
+    views_statistics_columns(i, names[i], n, &range, out);
   }
   fputs("\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
         "  LEFT JOIN width s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "analysis/statistics/statistics.h"
 #include "db/sql.h"
 
 enum { VIEWS_COUNT = 5 };
@@ -37,14 +38,14 @@ size_t views_statistics_main(const char *names[VIEWS_STATISTICS_MAIN]);
 void views_statistics_write(size_t count, const char *const *names, FILE *out);
 
 /* SQL of "... AS hN", the half width of the 95 % interval of mean mN with the deviation dN. n, t: SQL of the number of
- * values and of Student's quantile. share: sample_of_share(). NULL: the values are equal. */
-void views_statistics_half_width(size_t i, const char *n, const char *t, bool share, FILE *out);
+ * values and of Student's quantile. range: sample_in_range(). NULL: the values are equal. */
+void views_statistics_half_width(size_t i, const char *n, const char *t, const struct sample_range *range, FILE *out);
 /* SQL of the columns NAME_mean, _sd, _se, _hw95, _low95, _high95, _weak, _resolution and _resolution_verdict, with a
  * comma before each, from mN, dN, hN, eN and vN. */
-void views_statistics_columns(size_t i, const char *name, const char *n, bool share, FILE *out);
+void views_statistics_columns(size_t i, const char *name, const char *n, const struct sample_range *range, FILE *out);
 
-/* Is the column of the view runs a result between 0 and 1? */
-bool views_is_share(const char *column);
+/* The values that a column of the view runs can have; of a name that results of several engines have, those of all. */
+struct sample_range views_range(const char *column);
 
 /* SQL of a table expression with point_id, results_version and, for the N-th name from 0 (a column of the view runs),
  * the half width eN and the verdict vN of the view resolution; NULL if not studied. */

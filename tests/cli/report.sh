@@ -96,7 +96,7 @@ import {readFileSync} from 'node:fs';
 const {interval} = await import(process.argv[2]);
 const rows = JSON.parse(readFileSync('out', 'utf8'));
 for (const {share, n, mean, sd, ...want} of rows)
-  for (const [name, value] of Object.entries(interval(mean, sd, n, share === 1)))
+  for (const [name, value] of Object.entries(interval(mean, sd, n, {share, least: 0})))
     if (want[name] === null ? value !== null : !(Math.abs(value - want[name]) <= 1e-9 * Math.abs(want[name])))
       throw new Error(`${name}: ${value}, not ${want[name]} (${JSON.stringify({share, n, mean, sd})})`);
 if (rows.length !== 12) throw new Error(`${rows.length} rows`);
