@@ -106,7 +106,8 @@ struct engine_kind {
   /* What is modelled, memory, expected cost: text for `clast explain scene` and `plan`. `all`: also why, with sources.
    * malloc'd. */
   char *(*describe)(const void *inputs, bool all);
-  const size_t *also; /* offsets of results that `simulate` shows beside the headline where they are above 0 */
+  const size_t
+      *also; /* offsets of results that `simulate` shows beside the headline, of those that are 0 one of a section */
   size_t also_count;
   size_t ejecta;     /* offset of a struct ejecta in the results, for table ejecta; 0: the engine has none */
   size_t ejecta_sum; /* offset of the result that sums its momentum */

@@ -62,12 +62,14 @@ static status set_integer(const struct field *row, const struct field_value *val
 }
 
 static status unknown_choice(const struct field *row, const char *text, struct error *error) {
-  char list[600];
+  char list[700];
   struct text_guess guess = text_guess(text);
   for (size_t i = 0; row->choices[i]; i++)
     text_guess_offer(&guess, row->choices[i]);
 
   field_describe_choices(row, list, sizeof list);
+  if (row->kind == FIELD_TEXT && *text && strlen(text) <= QUOTE && !strpbrk(text, "/ ")) /* it may name a document */
+    text_append(list, sizeof list, ", or a file such as ./%s.yaml", text);
   if (!guess.nearest)
     return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'", row->path, list, QUOTE, text);
   return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'; did you mean '%s'?", row->path, list, QUOTE,

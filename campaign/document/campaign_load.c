@@ -117,6 +117,13 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
   *of_outcome = row != NULL;
   if (!row)
     row = field_find(kind->results, path, &second);
+  if (!row && strncmp(path, "beta", 4) == 0 && (!path[4] || path[4] == '_')) {
+    status_fail(error, STATUS_CONTENT,
+                "'%s' is the exponent of all runs of a point together; here a number of every run is needed, such as "
+                "largest_fraction. `clast estimates STORE` has beta with its interval",
+                path);
+    return NULL;
+  }
   if (!row) {
     struct text_guess guess = text_guess(path);
     field_guess(&outcome_table, &guess);

@@ -199,6 +199,8 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
   TRY(ask_points_count(store, &choice, &points, error));
   if (!table_for_people(format))
     return print_estimates(store, &choice, format, !quiet, error);
+  if (quiet && format == TABLE_TEXT)
+    format = TABLE_BARE;
   TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error)); /* what is told below tables is of it, too */
   if (points > MANY_POINTS)
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
@@ -207,7 +209,7 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
     TRY(print_means(store, path, campaign, quantity, format, quiet, error));
   else
     TRY(print_estimates(store, &choice, format, !quiet, error));
-  return quantity_tell_idle(store, error);
+  return quiet ? STATUS_OK : quantity_tell_idle(store, error);
 }
 
 status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,

@@ -142,16 +142,23 @@ static void answer_result(const struct engine_kind *kind, const struct run_resul
   answer(row->path, value.number, condition_mark(kind->conditions, result->outcome.warnings, row->path), says);
 }
 
-/* What else such a run is made for: a crater or a shock, where there is one. */
+/* What else such a run is made for: a crater or a shock, where there is one. Of what could be there, but is not, one
+ * line: "crater.depth 0". */
 static void answer_also(const struct engine_kind *kind, const struct run_result *result) {
+  const struct field *none = NULL;
   for (size_t i = 0; i < kind->also_count; i++)
     for (size_t k = 0; k < kind->results->count; k++) {
       const struct field *row = &kind->results->rows[k];
       struct field_value value;
       field_get(row, result->result, &value);
-      if (row->offset == kind->also[i] && value.number > 0 &&
-          condition_mark(kind->conditions, result->outcome.warnings, row->path) != CONDITION_WITHHELD)
+      if (row->offset != kind->also[i] || !(value.number >= 0) ||
+          condition_mark(kind->conditions, result->outcome.warnings, row->path) == CONDITION_WITHHELD)
+        continue;
+      const size_t section = strcspn(row->path, ".") + 1;
+      if (value.number > 0 || !none || strncmp(none->path, row->path, section) != 0)
         answer_result(kind, result, row);
+      if (!(value.number > 0))
+        none = row;
     }
 }
 

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Where newcomers stumbled: words that led nowhere, wide lines, remarks behind --quiet, numbers that cannot be.
+. "$(dirname "$0")/lib.bash"
+
+# Everyday words lead to the words of the program.
+for word in cube brick block box sphere ball cylinder rod ring disc steel stone hole crack mesh resume; do
+  "$clast" explain "$word" >out 2>err || fail "explain $word"
+  prints "$word"
+done
+ok "everyday words"
+
+# A path of a table stays whole.
+expect 0 "$clast" converge --list
+prints "target.material.porosity.curve "
+[ "$(wc -L <out)" -le 100 ] || fail "a wide list of knobs"
+
+# A material may be a file; the message is in lines that a terminal shows, and its first line tells the place.
+expect 64 "$clast" explain basalt-sphere --set target.material=gneiss
+says "or a file such as ./gneiss.yaml"
+head -n 1 err | grep -q '^clast: error: target.material.name: expected' || fail "the first line"
+one_error
+tiny small 'sedes: {per_point: 3}'
+expect 65 "$clast" run small.yaml
+grep -q '^small.yaml:9:1: error: ' err || fail "the place of an error"
+
+# beta is no number of a run.
+tiny beta
+sed -i 's/^seeds:.*/seeds: {until: {quantity: beta, half_width: 0.1}, max: 200}/' beta.yaml
+expect 65 "$clast" run beta.yaml
+says "'beta' is the exponent of all runs of a point together"
+
+# --quiet: an answer and marks, no remarks.
+tiny quiet "quantity: fragment_count"
+expect 0 "$clast" run quiet.yaml -j 2 --quiet
+says "marked (!)"
+! grep -q 'not shown\|left out\|resolution\|computed in' err || fail "remarks behind --quiet"
+
+# A count has no interval below 0: in tables, in CSV and in the view.
+sed 's/quiet/few/; s/per_point: 3/per_point: 2/' quiet.yaml >few.yaml
+expect 0 "$clast" run few.yaml -j 2 --quiet
+expect 0 "$clast" stats few.db --by strain,angle -Q fragment_count,dust_fraction,steps --csv
+python - <<'PY' || fail "intervals below 0"
+import csv, sqlite3
+rows = list(csv.DictReader(open("out")))
+low = [float(r[q + "_low95"]) for r in rows for q in ("fragment_count", "steps") if r[q + "_low95"]]
+wide = [r for r in rows if r["fragment_count_hw95"] and float(r["fragment_count_hw95"]) > float(r["fragment_count_mean"])]
+assert low and min(low) >= 0 and wide, (low, wide)
+assert sqlite3.connect("few.db").execute("select min(fragment_count_low95) from points").fetchone()[0] >= 0
+PY
+ok "no interval below 0"
+expect 0 "$clast" stats few.db --by strain,angle -Q fragment_count
+prints " (0 to "
+
+# Two campaigns of a merged store that share a point: how many runs they have together, and why number 1 is missing.
+tiny grow; sed -i 's/\[2 %, 5 %\]/[2 %]/; s/\[2 deg, 6 deg\]/[2 deg]/' grow.yaml
+expect 0 "$clast" run grow.yaml -j 2 --quiet
+sed -i 's/\[2 %\]/[2 %, 5 %]/' grow.yaml
+expect 0 "$clast" run grow.yaml -j 2 --quiet
+sed 's/\[2 %, 5 %\]/[5 %, 7 %]/; s/grow.db/other.db/' grow.yaml >other.yaml
+expect 0 "$clast" run other.yaml -j 2 --quiet
+expect 0 "$clast" merge all.db grow.db other.db
+expect 0 "$clast" status all.db
+says "left out: 1 earlier form of a campaign"
+says "campaigns share 1 point"
+says "together they have 9 runs"
+done_after 15
