@@ -25,7 +25,7 @@ if [ "$sanitized" -ne 0 ]; then # Open MPI itself leaks; without it, leaks are c
   chmod +x bin/mpirun
 fi
 checks=0
-longest=480 # s, for one command
+command_limit=480 # s, for one command
 
 fail() {
   echo "FAILED: $*"
@@ -41,7 +41,7 @@ expect() {
   local want=$1 got=0 input=/dev/null
   shift
   [ "${1-} ${2-}" != "python -" ] || input=/dev/stdin
-  timeout "$longest" "$@" >out 2>err <"$input" || got=$?
+  timeout "$command_limit" "$@" >out 2>err <"$input" || got=$?
   [ "$got" -eq "$want" ] || fail "exit $got, expected $want: $*"
   # Our lines have 100 columns at most; a command in `...` is a word, and a word, such as a path, may be longer.
   [ "${1-}" != "$clast" ] || awk '

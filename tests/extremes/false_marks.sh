@@ -19,7 +19,7 @@ campaign disc-collision "body.diameter: 14 cm" "collision.speed: [50 m/s, 100 m/
 campaign disc-explosion "body.diameter: 14 cm" "charge.energy: [1 kJ/m, 3 kJ/m, 6 kJ/m]" 10
 campaign block-impact "" "impact.speed: [200 m/s, 400 m/s]" 5
 if [ "${CLAST_FULL:-0}" = 1 ]; then # as they ship
-  longest=3600
+  command_limit=3600
   for scene in $("$clast" scenes --json | python -c "import json, sys; print(*[s['name'] for s in json.load(sys.stdin)])"); do
     campaign "$scene" "" ""
   done
