@@ -241,9 +241,12 @@ void dem_run_free(void *of) {
 /* An upper bound per grain: outlines, beams and contacts of the moving system, the tessellation, and the search for
  * fragments at the end. tests/unit/test_dem_engine.c compares it with the built-in scenes. */
 enum { BYTES_PER_GRAIN = 4000, BYTES_ANYWAY = 1 << 20 };
+enum { BYTES_PER_SQUARE = 80 }; /* of the lattice under a ring, which has squares without a grain */
 
 static size_t memory(const void *inputs) {
-  return (size_t)(dem_inputs_grains(inputs) * BYTES_PER_GRAIN) + BYTES_ANYWAY;
+  const struct dem_inputs *in = inputs;
+  const double empty = 4 * pow(dem_inputs_hole(in) / in->grain.spacing, 2);
+  return (size_t)(dem_inputs_grains(in) * BYTES_PER_GRAIN + empty * BYTES_PER_SQUARE) + BYTES_ANYWAY;
 }
 
 static double work(const void *inputs) {

@@ -19,6 +19,7 @@ static const struct {
     {true, "compression", {"body.columns=5", "body.rows=8"}},
     {true, "disc-collision", {"body.diameter=6 cm"}},
     {true, "disc-explosion", {"body.diameter=6 cm"}},
+    {true, "ring-explosion", {"body.diameter=10 cm", "body.wall=2.2 cm", "expansion.rate=500 1/s"}},
     {false, "uniaxial", {"body.columns=5", "body.rows=8"}},
     {false, "basalt-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4"}},
     {true, "basalt-sphere", {"fidelity.particles=150", "fidelity.projectile_spacing=0.4", "fracture.cell=8 mm"}},
@@ -271,12 +272,14 @@ static void every_number_is_told(void **state) {
 static const struct {
   const char *path, *scenes, *reason;
 } idle[] = {
-    {"contact.damping_bonded", "block-impact disc-collision disc-explosion uniaxial", "bonded grains do not overlap"},
-    {"contact.friction", "block-impact compression disc-collision disc-explosion uniaxial",
+    {"contact.damping_bonded", "block-impact disc-collision disc-explosion ring-explosion uniaxial",
+     "bonded grains do not overlap"},
+    {"contact.friction", "block-impact compression disc-collision disc-explosion ring-explosion uniaxial",
      "bounds tangential_damping, which is 0: told before the run"},
     {"fidelity.damage_step", "colliding-cylinders porous-target", "the body has no flaws: told before the run"},
     {"fidelity.energy_bound",
-     "block-impact compression disc-collision disc-explosion uniaxial basalt-sphere colliding-cylinders disruption "
+     "block-impact compression disc-collision disc-explosion ring-explosion uniaxial basalt-sphere colliding-cylinders "
+     "disruption "
      "gabbro-crater porous-ice porous-plate porous-target pumice-sphere solid-ice tensile-rod",
      "a bound: it only ends a run"},
     {"fidelity.flaws", "colliding-cylinders porous-target", "the body has no flaws: told before the run"},
@@ -323,11 +326,13 @@ static const struct {
     {"projectile.material.tillotson.beta", "basalt-sphere disruption porous-ice pumice-sphere",
      "of expanded hot matter, and there is none"},
     {"projectile.turned", "porous-ice pumice-sphere solid-ice", "so small a projectile is one particle"},
-    {"stop.least_time", "block-impact disc-collision disc-explosion", "the run ends before this rule acts"},
+    {"stop.least_time", "block-impact disc-collision disc-explosion ring-explosion",
+     "the run ends before this rule acts"},
     {"stop.quiet_growth", "colliding-cylinders gabbro-crater porous-ice porous-target pumice-sphere solid-ice",
      "the run ends before this rule acts"},
     {"stop.quiet_time",
-     "block-impact disc-collision disc-explosion colliding-cylinders gabbro-crater porous-ice porous-target solid-ice",
+     "block-impact disc-collision disc-explosion ring-explosion colliding-cylinders gabbro-crater porous-ice "
+     "porous-target solid-ice",
      "the run ends before this rule acts"},
     {"target.depth", "porous-plate", "a least side: it has the same periods of the lattice"},
     {"target.fracture", "basalt-sphere colliding-cylinders porous-target",

@@ -449,6 +449,11 @@ static const struct twin {
      {"fidelity.particles=300", "stop.end_time=0.1 ms"},
      {"vibration.speed=100 m/s"},
      {"vibration.speed=10 m/s"}},
+    {"early",
+     "ring-explosion",
+     {"body.diameter=12 cm", "body.wall=3 cm", "expansion.rate=5 1/s"},
+     {"stop.end_time=100 us"},
+     {"stop.end_time=3 ms"}},
     {"early", "disc-collision", {"body.diameter=10 cm"}, {"collision.speed=0.5 m/s"}, {"collision.speed=200 m/s"}},
     /* below its threshold, but it had its time: nothing broke, and that is the answer */
     {"early",

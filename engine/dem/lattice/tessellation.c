@@ -259,8 +259,10 @@ static bool is_far_outside(const struct builder *b, struct dem_point p) {
 
 static bool is_outside(const struct builder *b, struct dem_point centroid) {
   const struct dem_lattice *lattice = b->lattice;
-  return lattice->outline == DEM_OUTLINE_DISC &&
-         hypot(centroid.x - lattice->origin.x, centroid.y - lattice->origin.y) > lattice->radius;
+  if (lattice->outline != DEM_OUTLINE_DISC)
+    return false;
+  const double distance = hypot(centroid.x - lattice->origin.x, centroid.y - lattice->origin.y);
+  return distance > lattice->radius || distance < lattice->hole;
 }
 
 /* The unique corners of the cell of point i. False: no memory. */

@@ -19,6 +19,7 @@ struct dem_lattice {
   double spacing;          /* m, grid constant */
   double disorder;         /* 0..1: a over spacing; 0 = square lattice */
   double radius;           /* disc: cells whose centroid lies within it */
+  double hole;             /* disc: radius of its hole, cells whose centroid does not lie within it; 0: none */
   uint32_t columns, rows;  /* block: cells clipped by the rectangle columns x rows spacings */
   struct dem_point origin; /* centre of the disc, lower left corner of the block */
   uint64_t seed;

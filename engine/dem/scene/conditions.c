@@ -41,6 +41,7 @@ static double closing_speed(const struct dem_inputs *in) {
   case DEM_DISC_EXPLOSION: return sqrt(2 * in->charge.energy / (6 * grain));
   case DEM_BLOCK_IMPACT: return in->impact.speed;
   case DEM_DISC_COLLISION: return in->collision.speed;
+  case DEM_RING_EXPLOSION: /* its grains part */
   case DEM_UNIAXIAL:
   case DEM_COMPRESSION:
   case DEM_KINDS: break;
@@ -105,13 +106,15 @@ static double alone(const void *inputs) {
 
 /* ---- what a result needs to have happened ---- */
 
-/* s, in which a wave crosses a free body. */
+/* s, in which a wave crosses a free body; half of a ring's circumference. A ring that expands has turned back by then:
+ * it does so after a quarter of 2 pi R sqrt(rho/E). */
 static double crossing(const struct dem_inputs *in) {
   double extension, compression;
   dem_describe_sound_speeds(in, &extension, &compression);
   const double longest = in->kind == DEM_BLOCK_IMPACT
                              ? fmax((double)in->body.columns, (double)in->body.rows) * in->grain.spacing
-                             : in->body.diameter;
+                         : field_is_off(in->body.wall) ? in->body.diameter
+                                                       : M_PI / 2 * (in->body.diameter - in->body.wall);
   return longest / compression;
 }
 

@@ -62,8 +62,12 @@ static void protocol(const struct dem_inputs *in, FILE *out) {
             in->loading.rate);
     break;
   case DEM_DISC_COLLISION:
-    fprintf(out, "disc-collision: two equal discs approach at %.4g m/s, impact parameter %.4g diameters\n",
-            in->collision.speed, in->collision.impact_parameter);
+    fprintf(out, "disc-collision: two equal %s approach at %.4g m/s, impact parameter %.4g diameters\n",
+            field_is_off(in->body.wall) ? "discs" : "rings", in->collision.speed, in->collision.impact_parameter);
+    break;
+  case DEM_RING_EXPLOSION:
+    fprintf(out, "ring-explosion: all grains start outwards, with %.4g /s times their distance from the middle\n",
+            in->expansion.rate);
     break;
   case DEM_KINDS: break;
   }
@@ -103,6 +107,9 @@ static double energy_put_in(const struct dem_inputs *in) {
   case DEM_BLOCK_IMPACT: return 0.5 * in->grain.density * area * in->impact.speed * in->impact.speed;
   case DEM_DISC_COLLISION:
     return 0.125 * in->grain.density * dem_inputs_grains(in) * area * in->collision.speed * in->collision.speed;
+  case DEM_RING_EXPLOSION: /* mass and mean square of the distance of a ring */
+    return 0.25 * in->grain.density * dem_inputs_grains(in) * area * in->expansion.rate * in->expansion.rate *
+           (in->body.diameter * in->body.diameter / 4 + dem_inputs_hole(in) * dem_inputs_hole(in));
   case DEM_UNIAXIAL:
   case DEM_COMPRESSION:
   case DEM_KINDS: break;

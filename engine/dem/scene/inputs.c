@@ -7,9 +7,9 @@
 
 #include "engine/input_rows.h"
 
-static FIELD_WORDS(
-    kinds, DEM_KINDS, [DEM_DISC_EXPLOSION] = "disc-explosion", [DEM_BLOCK_IMPACT] = "block-impact",
-    [DEM_UNIAXIAL] = "uniaxial", [DEM_COMPRESSION] = "compression", [DEM_DISC_COLLISION] = "disc-collision");
+static FIELD_WORDS(kinds, DEM_KINDS, [DEM_DISC_EXPLOSION] = "disc-explosion", [DEM_BLOCK_IMPACT] = "block-impact",
+                   [DEM_UNIAXIAL] = "uniaxial", [DEM_COMPRESSION] = "compression",
+                   [DEM_DISC_COLLISION] = "disc-collision", [DEM_RING_EXPLOSION] = "ring-explosion");
 static FIELD_WORDS(directions, DEM_DIRECTIONS, [DEM_EXTENSION] = "extension", [DEM_SHORTENING] = "compression");
 static FIELD_WORDS(integrators, DEM_INTEGRATORS, [DEM_VERLET] = "verlet", [DEM_GEAR] = "gear");
 
@@ -17,10 +17,10 @@ static FIELD_WORDS(integrators, DEM_INTEGRATORS, [DEM_VERLET] = "verlet", [DEM_G
 
 #define INPUTS dem_inputs
 
-#define DISCS    "kind=disc-explosion|disc-collision"
+#define DISCS    "kind=disc-explosion|disc-collision|ring-explosion"
 #define BLOCKS   "kind=block-impact|uniaxial|compression"
 #define LOADED   "kind=uniaxial|compression"
-#define FREE     "kind=disc-explosion|block-impact|disc-collision"
+#define FREE     "kind=disc-explosion|block-impact|disc-collision|ring-explosion"
 #define TOUCHING "contact.law=" DEM_LAWS(DEM_LAWS_NAME, "|")
 
 static const struct field rows[] = {
@@ -29,11 +29,17 @@ static const struct field rows[] = {
                           "one grain of a block's lower side is shot into it\n"
                           "a block pulled or pressed between two opposite sides, free to slide sideways: K and nu\n"
                           "a block pressed between confined ends until it fails\n"
-                          "two equal discs run into each other",
+                          "two equal discs run into each other\n"
+                          "all grains of a ring start outwards, so that it widens everywhere at one strain rate",
            .doc = "Protocol: load or impact on the body.", .source = "K99 section 3"),
 
     REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .when = DISCS, .label = "diameter of the body",
-         .doc = "Diameter of the disc.", .source = "K99 table 1"),
+         .doc = "Diameter of the disc, or outer diameter of the ring.", .source = "K99 table 1"),
+    REAL(body.wall, "m", NAN, 0, 5e5, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM, .absent = "off",
+         .when = "kind=disc-collision|ring-explosion", .label = "thickness of the ring's wall",
+         .doc = "Thickness of the wall of a ring, at least two spacings: grains whose centroid lies between the two "
+                "circles belong to it. off: a disc without a hole.",
+         .source = "Szuszik & Kun (2025), abstract: ring thickness decides between segments and planar fragments"),
     COUNT(body.columns, 40, 1, 10000, .when = BLOCKS, .doc = "Grains along the block's width (x)."),
     COUNT(body.rows, 20, 2, 10000, .when = BLOCKS,
           .doc = "Grains along the block's height (y): the direction of the load or of the shot."),
@@ -122,6 +128,12 @@ static const struct field rows[] = {
     REAL(collision.impact_parameter, "1", 0, 0, 1, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=disc-collision",
          .doc = "Distance of the centres across the approach, over the diameter: 0 is head-on."),
 
+    REAL(expansion.rate, "1/s", 100, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=ring-explosion",
+         .label = "strain rate of the expansion",
+         .doc = "Strain rate at the start, along and across the wall: each grain starts away from the centre of mass "
+                "with this rate times its distance, without spin.",
+         .source = "Szuszik & Kun (2025), abstract, for the strain rate; the field of speeds is our choice"),
+
     REAL(stop.quiet_time, "s", 3e-4, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE,
          .doc =
              "The run is complete when no beam has broken for this long, counted from the first break. A time, not a "
@@ -153,8 +165,12 @@ const struct field_table dem_inputs = FIELD_TABLE(
     rows, struct dem_inputs, "dem scene",
     "Discrete elements in the plane: Voronoi grains joined by breakable beams (Kun, D'Addetta, Herrmann & Ramm 1999).");
 
-static bool discs(const struct dem_inputs *in) {
-  return in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION;
+bool dem_inputs_round(const struct dem_inputs *in) {
+  return in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION || in->kind == DEM_RING_EXPLOSION;
+}
+
+double dem_inputs_hole(const struct dem_inputs *in) {
+  return field_is_off(in->body.wall) ? 0 : in->body.diameter / 2 - in->body.wall;
 }
 
 bool dem_inputs_loaded(const struct dem_inputs *in) {
@@ -162,9 +178,10 @@ bool dem_inputs_loaded(const struct dem_inputs *in) {
 }
 
 double dem_inputs_grains(const struct dem_inputs *in) {
-  if (!discs(in))
+  if (!dem_inputs_round(in))
     return (double)in->body.columns * (double)in->body.rows;
-  double disc = 0.25 * M_PI * pow(in->body.diameter / in->grain.spacing, 2);
+  double disc = 0.25 * M_PI * pow(in->body.diameter / in->grain.spacing, 2) -
+                M_PI * pow(dem_inputs_hole(in) / in->grain.spacing, 2);
   return in->kind == DEM_DISC_COLLISION ? 2 * disc : disc;
 }
 
@@ -184,11 +201,22 @@ void dem_inputs_complete(void *inputs, const bool *given) {
 status dem_inputs_check(const void *inputs, struct error *error) {
   const struct dem_inputs *in = inputs;
   double grains = dem_inputs_grains(in);
-  bool disc = discs(in);
+  bool disc = dem_inputs_round(in);
   if (disc && !(in->body.diameter >= 4 * in->grain.spacing))
     return status_fail(error, STATUS_CONTENT,
                        "body.diameter is %.4g m, grain.spacing %.4g m: a disc needs a diameter of at least 4 spacings",
                        in->body.diameter, in->grain.spacing);
+  if (in->body.wall < 2 * in->grain.spacing)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "body.wall is %.4g m, grain.spacing %.4g m: a wall needs at least 2 spacings to be whole; give a "
+        "thicker wall or a smaller grain.spacing",
+        in->body.wall, in->grain.spacing);
+  if (in->body.wall > in->body.diameter / 2)
+    return status_fail(error, STATUS_CONTENT,
+                       "body.wall is %.4g m, more than half of body.diameter (%.4g m): give a thinner wall, or off for "
+                       "a disc without a hole",
+                       in->body.wall, in->body.diameter);
   if (!(grains <= 1e7))
     return status_fail(error, STATUS_CONTENT, "a body of %.3g grains is too large (at most 1e7): %s", grains,
                        disc ? "raise grain.spacing or lower body.diameter" : "lower body.columns or body.rows");

@@ -7,7 +7,15 @@
 #include "engine/dem/contacts/laws.h"
 #include "schemas/field.h"
 
-enum dem_kind { DEM_DISC_EXPLOSION, DEM_BLOCK_IMPACT, DEM_UNIAXIAL, DEM_COMPRESSION, DEM_DISC_COLLISION, DEM_KINDS };
+enum dem_kind {
+  DEM_DISC_EXPLOSION,
+  DEM_BLOCK_IMPACT,
+  DEM_UNIAXIAL,
+  DEM_COMPRESSION,
+  DEM_DISC_COLLISION,
+  DEM_RING_EXPLOSION,
+  DEM_KINDS
+};
 enum dem_direction { DEM_EXTENSION, DEM_SHORTENING, DEM_DIRECTIONS };
 enum dem_integrator { DEM_VERLET, DEM_GEAR, DEM_INTEGRATORS };
 
@@ -15,6 +23,7 @@ struct dem_inputs {
   int kind; /* enum dem_kind: the protocol */
   struct {
     double diameter;       /* m */
+    double wall;           /* thickness of a ring's wall, m; NaN = off: no hole */
     int64_t columns, rows; /* grains */
   } body;
   struct {
@@ -51,6 +60,9 @@ struct dem_inputs {
     double speed, impact_parameter; /* m/s; diameters */
   } collision;
   struct {
+    double rate; /* 1/s */
+  } expansion;
+  struct {
     double quiet_time, least_time, end_time; /* s */
   } stop;
   struct {
@@ -68,6 +80,10 @@ void dem_inputs_complete(void *inputs, const bool *given);
  * remedy. */
 status dem_inputs_check(const void *inputs, struct error *error); /* struct dem_inputs */
 
+/* Whether the body is round, or is two round bodies. */
+bool dem_inputs_round(const struct dem_inputs *inputs);
+/* Radius of the hole in a round body, m; 0: none. */
+double dem_inputs_hole(const struct dem_inputs *inputs);
 /* Whether moving sides load the body (uniaxial, compression). */
 bool dem_inputs_loaded(const struct dem_inputs *inputs);
 /* Estimated number of grains of the body (or of both bodies), to plan memory and time. */

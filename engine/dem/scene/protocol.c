@@ -8,11 +8,11 @@ enum { BODY_FIRST = 0, BODY_SECOND = 1 }; /* streams of the lattice */
 
 status dem_protocol_body(const struct dem_inputs *in, uint64_t seed, struct dem_tessellation **out,
                          struct error *error) {
-  bool disc = in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION;
-  struct dem_lattice lattice = {.outline = disc ? DEM_OUTLINE_DISC : DEM_OUTLINE_BLOCK,
+  struct dem_lattice lattice = {.outline = dem_inputs_round(in) ? DEM_OUTLINE_DISC : DEM_OUTLINE_BLOCK,
                                 .spacing = in->grain.spacing,
                                 .disorder = in->grain.disorder,
                                 .radius = in->body.diameter / 2,
+                                .hole = dem_inputs_hole(in),
                                 .columns = (uint32_t)in->body.columns,
                                 .rows = (uint32_t)in->body.rows,
                                 .seed = seed,
@@ -137,12 +137,29 @@ static void collision(struct dem_run *run) {
   }
 }
 
+/* A uniform expansion about the centre of mass, which has neither momentum nor angular momentum. */
+static void expansion(struct dem_run *run) {
+  const struct dem_tessellation *t = run->tessellation;
+  struct dem_point centre = {0, 0};
+  double mass = 0;
+  for (uint32_t c = 0; c < t->cell_count; c++) {
+    centre.x += t->area[c] * t->centroid[c].x;
+    centre.y += t->area[c] * t->centroid[c].y;
+    mass += t->area[c];
+  }
+  const double rate = run->inputs.expansion.rate;
+  for (uint32_t c = 0; c < t->cell_count; c++)
+    dem_system_set_velocity(run->system, c, rate * (t->centroid[c].x - centre.x / mass),
+                            rate * (t->centroid[c].y - centre.y / mass), 0);
+}
+
 status dem_protocol_start(struct dem_run *run, struct error *error) {
   status code = STATUS_OK;
   switch ((enum dem_kind)run->inputs.kind) {
   case DEM_DISC_EXPLOSION: code = charge(run, error); break;
   case DEM_BLOCK_IMPACT: impact(run); break;
   case DEM_DISC_COLLISION: collision(run); break;
+  case DEM_RING_EXPLOSION: expansion(run); break;
   case DEM_UNIAXIAL:
   case DEM_COMPRESSION: return dem_loading_start(run, error);
   case DEM_KINDS: break;
