@@ -16,7 +16,7 @@ struct fragment {
   double spin[3]; /* rad/s: inverse moment of inertia times angular momentum, about the centre of mass (2D: z only) */
   double moment_of_inertia; /* kg m^2, about the centre of mass (2D: about z; 3D: trace/3 of the tensor) */
   double kinetic_energy;    /* J: translation, rotation and internal motion */
-  double length[3];         /* m, longest first: between plates across its principal axes; 0: not measured */
+  double length[3];         /* m, longest first: axes of the solid ellipsoid of its moments; 0: not measured */
   uint32_t count;           /* grains or particles in it */
   uint32_t first;           /* its lowest member index */
 };

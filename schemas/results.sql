@@ -355,7 +355,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
   second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
   fragments_shaped INTEGER, -- [1] Number of fragments of at least 60 particles, without the largest: those whose shapes count.
-  fragments_b_over_a REAL, -- [1] Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are those between plates across the fragment's principal axes. Off without such a fragment.
+  fragments_b_over_a REAL, -- [1] Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are the axes of the solid ellipsoid with the fragment's moments of inertia. Off without such a fragment.
   fragments_c_over_a REAL, -- [1] Shortest over longest length of the same fragments.
   ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
@@ -1286,7 +1286,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Number of explicit f
 
 INSERT INTO column_doc VALUES ('result_sph', 'fracture_ceased', NULL, 'Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'fragments_b_over_a', '1', 'Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are those between plates across the fragment''s principal axes. Off without such a fragment.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'fragments_b_over_a', '1', 'Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are the axes of the solid ellipsoid with the fragment''s moments of inertia. Off without such a fragment.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'fragments_c_over_a', '1', 'Shortest over longest length of the same fragments.', 1);
 
@@ -1558,7 +1558,7 @@ INSERT INTO column_doc VALUES ('runs', 'fracture_ceased', NULL, 'Fracture ceased
 
 INSERT INTO column_doc VALUES ('runs', 'fragment_count', '1', 'Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'fragments_b_over_a', '1', 'Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are those between plates across the fragment''s principal axes. Off without such a fragment.', 0);
+INSERT INTO column_doc VALUES ('runs', 'fragments_b_over_a', '1', 'Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are the axes of the solid ellipsoid with the fragment''s moments of inertia. Off without such a fragment.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'fragments_c_over_a', '1', 'Shortest over longest length of the same fragments.', 0);
 

@@ -218,16 +218,17 @@ static bool is_plateau(const struct response *response, const struct crossing *o
   if (!(high - low > PLATEAU) || inside < PLATEAU_RUNS)
     return false;
   const double rounding = 1e-140; /* of a response that is the level everywhere: weigh() gives it a variance */
-  double n = 0, sum = 0, variance = 0;
+  double n = 0, sum = 0, variance = 0, seen = 0;
   size_t thirds = 0;
   for (size_t i = 0; i < response->count; i++) {
     const struct place *place = &response->place[i];
     if (place->x < low || place->x > high)
       continue;
     n += place->n;
+    seen += place->n;
     sum += place->n * place->mean;
     variance += place->n * (is_share(response) ? response->share * (1 - response->share) : place->variance);
-    if (n < inside / 3 - 0.5)
+    if (seen < (double)(thirds + 1) * inside / 3 - 0.5) /* a third may end in the middle of a place with many runs */
       continue;
     if (fabs(sum / n) + 2 * sqrt(variance) / n >
         fmax(PLATEAU_RANGE * (is_share(response) ? 1 : most - least), rounding))

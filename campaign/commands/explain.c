@@ -125,9 +125,9 @@ static bool explain_glossary(const char *word) {
   return false;
 }
 
-/* Prints the meaning of a condition or a column of the store. False: it is neither. */
+/* Prints the meaning of an exponent or a column of the store. False: it is neither. */
 static bool explain_word(const char *word) {
-  return explain_exponent(word) || explain_conditions(word) || explain_column(word);
+  return explain_exponent(word) || explain_column(word);
 }
 
 /* Offers all words to the search for the nearest name. `name` keeps the one that is the nearest. */
@@ -220,8 +220,8 @@ static void explain_another(const struct field_table *table, const struct field 
     field_explain(table, row->path, has_results(table), stdout);
 }
 
-/* Prints what the paths of all tables say about `path`. Returns how many tables know it. */
-static size_t explain_rows(const char *path, struct text_guess *guess) {
+/* Prints what the paths of all tables say about `path`, `after` other text. Returns how many tables know it. */
+static size_t explain_rows(const char *path, bool after, struct text_guess *guess) {
   const struct field_table *list[TABLES_MAXIMUM];
   const size_t count = tables(list);
   size_t found = 0;
@@ -234,7 +234,7 @@ static size_t explain_rows(const char *path, struct text_guess *guess) {
       field_guess(list[i], guess);
       continue;
     }
-    fputs(found++ ? "\n" : "", stdout);
+    fputs(found++ || after ? "\n" : "", stdout);
     words_print(stdout, "", "%s: %s", list[i]->name, list[i]->doc);
     if (row || first) {
       field_explain(list[i], row ? row->path : first->path, has_results(list[i]), stdout);
@@ -302,18 +302,18 @@ static bool explain_whole(const char *word) {
 static status explain_path(const char *path, struct error *error) {
   struct text_guess guess = text_guess(path);
   const struct campaign_key *key = campaign_keys_find(path);
-  const bool word = explain_glossary(path);
+  bool word = explain_glossary(path);
+  word = explain_conditions(path) || word; /* first: messages send here, and a path may end in the same word */
   if (word && (strchr(path, '/') || explain_whole(path)))
     return STATUS_OK;
-  if (word)
-    putchar('\n');
-  if (explain_rows(path, &guess)) {
+  if (explain_rows(path, word, &guess)) {
     if (strcmp(path, OUTCOME_NAME(warnings)) == 0 && putchar('\n'))
       explain_conditions(NULL);
     return STATUS_OK;
   }
   if (key) {
-    printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
+    printf("%s%s: %s\n%s: %s\n%s", word ? "\n" : "", campaign_table.name, campaign_table.doc, key->name, key->doc,
+           key->forms);
     if (key->table) {
       putchar('\n');
       field_explain(key->table, "", has_results(key->table), stdout);
@@ -324,7 +324,7 @@ static status explain_path(const char *path, struct error *error) {
   const char *said = NULL, *result = result_of(path, plain, &said);
   if (explain_whole(path) || explain_word(path) || word)
     return STATUS_OK;
-  if (strcmp(result, path) != 0 && explain_rows(result, &guess)) {
+  if (strcmp(result, path) != 0 && explain_rows(result, false, &guess)) {
     printf("%s: %s%s\n", path, said ? said : "its name in a store with runs of two engines",
            said ? ", in a store" : "");
     return STATUS_OK;

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "engine/fragments.h"
 #include "engine/grow.h"
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
@@ -237,6 +238,30 @@ static void measure(struct mesh *m) {
     shift(m, moment);
 }
 
+/* Parts of the solid: surfaces of joined faces that enclose a volume. A cavity encloses a negative one. */
+static status count_parts(struct mesh *m, const char *name, struct error *error) {
+  OWNED uint32_t *parent = malloc(m->vertices * sizeof *parent);
+  OWNED double *volume = calloc(m->vertices, sizeof *volume); /* by the surface's lowest vertex */
+  if (!parent || !volume)
+    return no_memory(name, error);
+  for (size_t v = 0; v < m->vertices; v++)
+    parent[v] = (uint32_t)v;
+  for (size_t f = 0; f < m->faces; f++)
+    for (int corner = 1; corner < 3; corner++)
+      fragments_join(parent, m->face[f][0], m->face[f][corner]);
+  for (size_t f = 0; f < m->faces; f++) {
+    const uint32_t surface = fragments_root(parent, m->face[f][0]);
+    double b[3], c[3], d[3]; /* from a point of the surface: no volume of other places adds its rounding */
+    vector3_subtract(m->vertex[m->face[f][1]], m->vertex[surface], b);
+    vector3_subtract(m->vertex[m->face[f][2]], m->vertex[surface], c);
+    vector3_cross(b, c, d);
+    volume[surface] += vector3_dot(m->vertex[m->face[f][0]], d) - vector3_dot(m->vertex[surface], d);
+  }
+  for (size_t v = 0; v < m->vertices; v++)
+    m->parts += volume[v] > 0;
+  return STATUS_OK;
+}
+
 static status check_size(const struct mesh *m, const struct mesh_soup *soup, struct error *error) {
   double box = 1;
   for (int k = 0; k < 3; k++)
@@ -271,6 +296,7 @@ static status build(struct mesh *m, struct mesh_soup *soup, struct error *error)
   shift(m, middle); /* far from the origin volumes would cancel */
   measure(m);
   TRY(check_size(m, soup, error));
+  TRY(count_parts(m, soup->name, error));
   return mesh_search_make(m, soup, error);
 }
 

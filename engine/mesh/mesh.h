@@ -24,6 +24,7 @@ struct mesh {
   size_t tail; /* bytes of the file behind the last face, which are not read (binary STL) */
   double (*vertex)[3];
   uint32_t (*face)[3]; /* its vertices, counter-clockwise seen from outside */
+  size_t parts;        /* of the solid, which do not touch */
   double centre[3];    /* of mass, in the coordinates of the file */
   double volume, area;
   double low[3], high[3];       /* the box around it */

@@ -263,4 +263,12 @@ for name in idle acts alone; do
     "$([ $name != idle ] || echo 'no effect in these runs: friction')" "inputs without effect of $name"
 done
 ok "inputs without effect"
-done_after 117
+
+# Messages send to `clast explain WORD`, also where an input or a result ends in the same word.
+expect 0 "$clast" explain conditions
+for word in $(sed -n 's/^- \*\*\([a-z]*\)\*\* .*/\1/p' out | sort -u); do
+  "$clast" explain "$word" >said || fail "explain $word"
+  grep -q "^- \*\*$word\*\* " said || fail "explain $word does not tell the condition"
+done
+ok "every condition is explained"
+done_after 119

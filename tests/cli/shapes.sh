@@ -77,6 +77,26 @@ prints 'tail, cut, shallow' # the crater of so few particles is 1.7 spacings dee
 expect 64 "$clast" simulate ./scenes/lobes.yaml --set target.mesh.file=scenes/short.stl
 says "cut short"
 
+# Three cubes in one file are three pieces from the start: `links` marks them only if one of them counts as many.
+python - <<'PY'
+with open('scenes/cubes.obj', 'w') as out:
+    for body, middle in enumerate((0, -2, 2)):
+        out.writelines(f'v {middle + x} {y} {z}\n' for x in (-.5, .5) for y in (-.5, .5) for z in (-.5, .5))
+        for face in (1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4):
+            out.write('f ' + ' '.join(str(8 * body + corner) for corner in face) + '\n')
+PY
+for length in 1.2 0.6; do
+  expect 0 "$clast" simulate ./scenes/lobes.yaml --set target.mesh.file=scenes/cubes.obj --set target.fracture=off \
+    --set stop.end_time='6 us' --set fragments.link_length=$length --json
+  python - $length <<'PY'
+import json, sys
+run, short = json.load(open('out'))[0], float(sys.argv[1]) < 1
+assert ('links' in run['warnings']) == short, run['warnings']
+assert (run['fragment_count'] == 3) == (not short), run['fragment_count']
+PY
+done
+ok "three parts"
+
 sed 's/lobes.obj/open.obj/' scenes/lobes.yaml >scenes/open.yaml
 expect 65 "$clast" simulate ./scenes/open.yaml
 says "scenes/open.yaml:5"
@@ -107,4 +127,4 @@ says "have changed since it was stored"
 expect 65 "$clast" check damaged.db
 prints "have changed since it was stored"
 
-done_after 26
+done_after 29

@@ -125,6 +125,20 @@ static void kinds(void **state) {
   assert_int_equal(of_curve(nothing, 0).kind, CROSSING_PLATEAU);
 }
 
+/* Six places with 20 runs each, at the level without noise: a third of their runs ends within a place. */
+static void plateau_of_few_places(void **state) {
+  (void)state;
+  static const double level[4] = {-1, -0.01, 0.01, 1};
+  double x[200], y[200];
+  for (int i = 0; i < 200; i++) {
+    const int place = i / 20;
+    x[i] = place == 0 ? 0 : place == 9 ? 1 : 0.2 + 0.07 * place;
+    y[i] = place < 2 ? level[place] : place > 7 ? level[place - 6] : 0;
+  }
+  const struct crossing found = find(200, x, y, 0, NAN);
+  assert_int_equal(found.kind, CROSSING_PLATEAU);
+}
+
 static void runs_without_results(void **state) {
   (void)state;
   struct error error;
@@ -180,6 +194,7 @@ int main(void) {
       cmocka_unit_test(modes_by_hand),
       cmocka_unit_test(places_out_of_order_are_pooled),
       cmocka_unit_test(kinds),
+      cmocka_unit_test(plateau_of_few_places),
       cmocka_unit_test(runs_without_results),
       cmocka_unit_test(a_place_that_contradicts_is_looked_at),
       cmocka_unit_test(rounds_grow_by_a_sixth),

@@ -285,12 +285,14 @@ static void parts_and_cavities(void **state) {
   char *hollow = two_cubes(1, 0, true), *apart = two_cubes(1, 3, false);
   struct mesh *m = read_text(hollow);
   near(m->volume, 7, 1e-13);
+  assert_int_equal(m->parts, 1);
   assert_false(mesh_inside(m, (const double[3]){0, 0.1, 0.2}));
   assert_true(mesh_inside(m, (const double[3]){0.7, 0.1, 0.2}));
   mesh_free(m);
   m = read_text(apart);
   near(m->volume, 9, 1e-13);
   near(m->centre[0], 1. / 3, 1e-14);
+  assert_int_equal(m->parts, 2);
   mesh_free(m);
   free(hollow);
   free(apart);

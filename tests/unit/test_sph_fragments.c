@@ -444,8 +444,13 @@ static void expect_lengths(struct sph_particles *p, const double length[3], doub
   sph_particles_free(p);
 }
 
-/* Lengths between plates of bodies whose particles are one apart and one wide: a box of known sides and a line, turned,
- * and spheres. Fewer than 60 particles have none. */
+/* The axis of the solid ellipsoid with the moments of n particles in a row, one apart. */
+static double axis_of(int n) {
+  return sqrt(5 * (n * n - 1) / 3.0);
+}
+
+/* A lattice box whose moments are known; fewer than 60 particles and a line have no lengths; a sphere has its diameter.
+ */
 static void lengths(void **state) {
   (void)state;
   struct sph_particles *p = make(12 * 7 * 4, 0);
@@ -454,18 +459,18 @@ static void lengths(void **state) {
     for (int b = 0; b < 7; b++)
       for (int c = 0; c < 4; c++)
         put_turned(p, a, b, c);
-  expect_lengths(p, (const double[]){12, 7, 4}, 1e-9);
+  expect_lengths(p, (const double[]){axis_of(12), axis_of(7), axis_of(4)}, 1e-9);
   p = make(60, 0);
   p->n = 0;
   for (int a = 0; a < 60; a++)
     put_turned(p, a, 0, 0);
-  expect_lengths(p, (const double[]){60, 1, 1}, 1e-9);
+  expect_lengths(p, (const double[]){0, 0, 0}, 0);
   p = make(59, 0);
   p->n = 0;
   for (int a = 0; a < 59; a++)
-    put_turned(p, a, 0, 0);
+    put_turned(p, a % 4, a / 4 % 4, a / 16);
   expect_lengths(p, (const double[]){0, 0, 0}, 0);
-  for (int radius = 3; radius < 12; radius += 8) { /* the outline of a lattice: a layer at both ends */
+  for (int radius = 3; radius < 12; radius += 8) {
     p = make(10000, 0);
     p->n = 0;
     for (int a = -radius; a <= radius; a++)
@@ -473,8 +478,61 @@ static void lengths(void **state) {
         for (int c = -radius; c <= radius; c++)
           if (a * a + b * b + c * c <= radius * radius)
             put_turned(p, a, b, c);
-    expect_lengths(p, (const double[]){2 * radius + 1, 2 * radius + 1, 2 * radius + 1}, 1);
+    const double diameter = 2 * cbrt((double)p->n / (4 * M_PI / 3)); /* of the sphere of as many particles */
+    expect_lengths(p, (const double[]){diameter, diameter, diameter}, 0.02 * diameter);
   }
+}
+
+/* Boxes 12:8:5 of about 74 particles, cut from a lattice in 40 directions: mean ratios within 0.02 of the box's.
+ * Lengths between plates gave 0.50 for 0.42. */
+static void ratios_of_coarse_boxes(void **state) {
+  (void)state;
+  enum { BOXES = 40 };
+  const double side[3] = {12 / 1.85, 8 / 1.85, 5 / 1.85};
+  double middle = 0, shortest = 0;
+  for (uint64_t box = 0; box < BOXES; box++) {
+    double axis[3][3] = {0}, shift[3];
+    for (int d = 0; d < 3; d++) {
+      shift[d] = draw(box, 0, (uint64_t)d);
+      axis[0][d] = draw(box, 1, (uint64_t)d) - 0.5;
+      axis[1][d] = draw(box, 2, (uint64_t)d) - 0.5;
+    }
+    for (int a = 0; a < 2; a++) { /* Gram and Schmidt */
+      double along = 0, square = 0;
+      for (int d = 0; d < 3; d++)
+        along += a ? axis[0][d] * axis[1][d] : 0;
+      for (int d = 0; d < 3; d++) {
+        axis[a][d] -= along * axis[0][d];
+        square += axis[a][d] * axis[a][d];
+      }
+      for (int d = 0; d < 3; d++)
+        axis[a][d] /= sqrt(square);
+    }
+    for (int d = 0; d < 3; d++)
+      axis[2][d] = axis[0][(d + 1) % 3] * axis[1][(d + 2) % 3] - axis[0][(d + 2) % 3] * axis[1][(d + 1) % 3];
+    struct sph_particles *p = make(200, 0);
+    p->n = 0;
+    for (int i = -6; i <= 6; i++)
+      for (int j = -6; j <= 6; j++)
+        for (int k = -6; k <= 6; k++) {
+          const double at[3] = {i + shift[0], j + shift[1], k + shift[2]};
+          bool inside = true;
+          for (int a = 0; a < 3; a++)
+            inside &= fabs(at[0] * axis[a][0] + at[1] * axis[a][1] + at[2] * axis[a][2]) <= side[a] / 2;
+          if (inside)
+            put_turned(p, at[0], at[1], at[2]);
+        }
+    struct sph_fragments_options o = sph_fragments_default();
+    o.link_length = 2; /* corners hang together */
+    struct sph_fragments f = find(p, &o);
+    const double *length = f.fragments[0].length;
+    middle += length[1] / length[0] / BOXES;
+    shortest += length[2] / length[0] / BOXES;
+    sph_fragments_clear(&f);
+    sph_particles_free(p);
+  }
+  if (!(fabs(middle - 8 / 12.0) <= 0.02 && fabs(shortest - 5 / 12.0) <= 0.02))
+    fail_msg("boxes 12:8:5: mean b/a %g and c/a %g", middle, shortest);
 }
 
 static void periodic_box(void **state) {
@@ -589,6 +647,7 @@ int main(void) {
       cmocka_unit_test(turning_pieces),
       cmocka_unit_test(shape_and_ejecta),
       cmocka_unit_test(lengths),
+      cmocka_unit_test(ratios_of_coarse_boxes),
       cmocka_unit_test(periodic_box),
       cmocka_unit_test(far_flung_and_not_finite),
       cmocka_unit_test(nothing_all_dust_all_one),

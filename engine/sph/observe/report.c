@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/mesh/mesh.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/modules/module.h"
 #include "engine/sph/run/run.h"
@@ -42,9 +43,12 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
 
 static status find_gaps(struct sph_run *run, struct error *error) {
   const size_t bodies = (size_t)run->body_count - sph_derived_has_intruder(&run->inputs);
+  size_t pieces = bodies;
+  for (size_t k = 0; k < bodies; k++) /* a surface from a file may have several parts */
+    pieces += run->shape[k].mesh ? run->shape[k].mesh->parts - 1 : 0;
   SPH_FRAGMENTS found = {0};
   TRY(fragments_of(run, run->start, NAN, true, &found, error));
-  run->has_gaps = found.count > bodies;
+  run->has_gaps = found.count > pieces;
   return STATUS_OK;
 }
 
@@ -117,7 +121,7 @@ static void report_shapes(const struct sph_fragments *found, struct sph_results 
   results->shapes.shaped = 0;
   for (size_t k = 1; k < found->count; k++) {
     const double *length = found->fragments[k].length;
-    if (found->fragments[k].count < SPH_FRAGMENTS_SHAPED)
+    if (!(length[0] > 0))
       continue;
     results->shapes.shaped++;
     middle += length[1] / length[0];

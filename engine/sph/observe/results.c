@@ -61,11 +61,9 @@ static const struct field rows[] = {
     RESULT_SHARE(fragments.b_over_a, shapes.b_over_a,
                  .doc =
                      "Middle over longest length of fragments of at least 60 particles, without the largest: the mean "
-                     "over the fragments. Lengths are those between plates across the fragment's principal axes. Off "
-                     "without such a fragment.",
-                 .source = "as measured by Michikami and others 2016"),
-    RESULT_SHARE(fragments.c_over_a, shapes.c_over_a, .doc = "Shortest over longest length of the same fragments.",
-                 .source = "as measured by Michikami and others 2016"),
+                     "over the fragments. Lengths are the axes of the solid ellipsoid with the fragment's moments of "
+                     "inertia. Off without such a fragment."),
+    RESULT_SHARE(fragments.c_over_a, shapes.c_over_a, .doc = "Shortest over longest length of the same fragments."),
     SHARE(ejecta.mass_fraction,
           .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. "
                  "Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.",

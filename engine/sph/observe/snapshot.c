@@ -21,8 +21,7 @@ static const struct snapshot_file_column fragment_columns[] = {
            "angular velocity: inverse inertia tensor times angular momentum about the centre of mass; nan below 100 "
            "particles"),
     COLUMN(length, 3, "m",
-           "lengths between plates across its principal axes, longest first, a particle's width included; nan below 60 "
-           "particles"),
+           "axes of the solid ellipsoid with its moments of inertia, longest first; nan below 60 particles"),
     COLUMN(moment_of_inertia, 0, "kg m2", "a third of the inertia tensor's trace, about the centre of mass"),
     COLUMN(kinetic_energy, 0, "J", "translation, rotation and internal motion"),
     COLUMN(count, 0, "1", "number of its particles"),
@@ -179,7 +178,7 @@ status sph_snapshot_write(void *of, const char *path, struct error *error) {
     for (int d = 0; d < 3; d++) {
       struct fragment *f = &found.fragments[k];
       f->spin[d] = f->count < SPH_FRAGMENTS_MEASURED ? (double)NAN : f->spin[d];
-      f->length[d] = f->count < SPH_FRAGMENTS_SHAPED ? (double)NAN : f->length[d];
+      f->length[d] = f->length[d] > 0 ? f->length[d] : (double)NAN;
     }
   TRY(snapshot_file_open(&sph_engine, run->seed, in, &outcome, &results, &file, error));
   sph_snapshot_particles(file, run->now, &found, sph_system_flaws(run->system, flaws) ? flaws : NULL);
