@@ -205,8 +205,13 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
       fputc(' ', out);
       column++;
     }
-    fwrite(text, 1, word, out);
-    column += word;
+    for (size_t i = 0; i < word; column++)
+      if (text[i] == '\n') { /* within a quotation */
+        fputc(' ', out);
+        i += strspn(text + i, " \n");
+      } else {
+        fputc(text[i++], out);
+      }
   }
   fputc('\n', out);
 }

@@ -129,6 +129,7 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
     field_guess(&outcome_table, &guess);
     field_guess(kind->results, &guess);
     text_guess_offer_part(&guess, "M_1/M", OUTCOME_NAME(largest_fraction));
+    text_guess_offer_part(&guess, "M_2/M", OUTCOME_NAME(second_fraction));
     const char *nearest = guess.nearest;
     status_fail(error, STATUS_CONTENT,
                 "no quantity '%s'%s%s%s; a run of engine %s reports largest_fraction, fragment_count, "

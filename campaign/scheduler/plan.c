@@ -174,6 +174,7 @@ struct looking {
   size_t sampled;
   struct scene *costliest;     /* the point with the most work; owned */
   uint64_t asked, there;       /* runs looked up in the store */
+  double wall_s, wall_s_most;  /* of those that are there: sum and longest */
   uint8_t seen[LOOKED_AT][16]; /* identities of the points' first runs */
   size_t seen_count;
 };
@@ -196,7 +197,13 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
     uint8_t identity[16];
     scene_identity(scene, campaign_seed(campaign, scene, r), identity);
     looking->asked++;
-    looking->there += store_has_run(store, identity);
+    double seconds = NAN;
+    struct error ignored;
+    if (!store_has_run(store, identity) || ask_run_wall_time(store, identity, &seconds, &ignored) || isnan(seconds))
+      continue;
+    looking->there++;
+    looking->wall_s += seconds;
+    looking->wall_s_most = fmax(looking->wall_s_most, seconds);
   }
 }
 
@@ -351,6 +358,9 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
       plan->run_s_most = fmax(plan->run_s_most, plan->run_s_mean);
     }
     plan->disk_bytes = (double)plan->runs_most * (BYTES_PER_RUN + BYTES_PER_FRAGMENT * (double)fragments);
+  } else if (looking->there) {
+    plan->run_s_mean = looking->wall_s / (double)looking->there;
+    plan->run_s_most = looking->wall_s_most;
   }
   plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
   plan->cpu_s_most = (double)(plan->runs_most - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
@@ -383,8 +393,6 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   const bool trial = !options->no_trial && (!scene || !engine_ready(scene->kind, scene->inputs, &ignored));
   if (code == STATUS_OK && trial)
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
-  else if (code == STATUS_OK && store)
-    ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
   if (code == STATUS_OK) {
     plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs, options->all) : NULL;
     add_up(campaign, options, &looking, fragments, plan);
@@ -418,7 +426,7 @@ static const char *bytes(double count, char *buffer, size_t size) {
 /* Where the times of a run come from. */
 static const char *how_timed(const struct plan *plan) {
   if (!plan->trial_made)
-    return " (from runs in the store)";
+    return " (from its runs in the store)";
   if (plan->trial_finished)
     return " (whole runs timed)";
   if (plan->trial_whole)

@@ -645,10 +645,10 @@ status ask_run_masses(struct store *store, int64_t run_id, double **masses, size
   return STATUS_OK;
 }
 
-status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error) {
-  *longest = NAN;
-  TRY(answer_number(store, mean, error, "SELECT avg(wall_time) FROM run"));
-  return answer_number(store, longest, error, "SELECT max(wall_time) FROM run");
+status ask_run_wall_time(struct store *store, const uint8_t identity[16], double *seconds, struct error *error) {
+  char hexadecimal[33];
+  text_hex(identity, 16, hexadecimal);
+  return answer_number(store, seconds, error, "SELECT wall_time FROM run WHERE identity = x'%s'", hexadecimal);
 }
 
 struct answer ask_run_kept(struct store *store, struct error *error) {

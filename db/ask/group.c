@@ -103,8 +103,9 @@ static status look_for(struct store *store, const char *columns_sql, const char 
   snprintf(named, sizeof named, "%.*s_name", NAME - 6, column);
   const char *const forms[] = {name, column, without_engine(column), named, name};
   *choice = (struct choice){.guess = text_guess(name)};
-  if (strcmp(name, "M_1/M") == 0)
-    snprintf(choice->near, sizeof choice->near, OUTCOME_DEFAULT);
+  if (strcmp(name, "M_1/M") == 0 || strcmp(name, "M_2/M") == 0)
+    snprintf(choice->near, sizeof choice->near, "%s",
+             name[2] == '1' ? OUTCOME_NAME(largest_fraction) : OUTCOME_NAME(second_fraction));
   for (size_t i = 0; choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
     choice->wanted = forms[i];
     choice->sections = i + 1 == sizeof forms / sizeof forms[0];

@@ -275,8 +275,9 @@ static status load_system(void *run, const void *bytes, size_t size, struct erro
 }
 
 static const struct knob knobs[] = {
-    KNOB("grains", RESOLUTION, .inputs = {{"grain.spacing", 1}}, .factors = {2, 1.41, 1, 0.71}, .step_power = 1,
-         .meaning = "mean size of a grain of a disc: half as many grains each"),
+    KNOB("grains", RESOLUTION, .inputs = {{"grain.spacing", 1}, {"body.columns", -1}, {"body.rows", -1}},
+         .factors = {2, 1.41, 1, 0.71}, .step_power = 1,
+         .meaning = "mean size of a grain: half as many grains each; the sides of a block stay, to a whole grain"),
     KNOB("time_step", RESOLUTION, .inputs = {{"fidelity.time_step", 1}}, KNOB_HALVES, .step_power = 1, .pairs = true,
          .meaning = "time step"),
     KNOB("integrator", RESOLUTION, .inputs = {{"fidelity.integrator"}}, .choices = {"verlet", "gear"}, .pairs = true,

@@ -71,6 +71,7 @@ static void test_wrap_keeps_numbers_and_commands(void **state) {
   (void)state;
   assert_wrapped("the last at (4 660 000 Pa)", 18, "the last at\n(4 660 000 Pa)\n");
   assert_wrapped("next: (`clast run a.yaml`), then go", 20, "next:\n(`clast run a.yaml`),\nthen go\n");
+  assert_wrapped("as `clast\n    run a.yaml` says", 20, "as\n`clast run a.yaml`\nsays\n");
   assert_wrapped("`a b` `c d` an odd ` of one", 9, "`a b`\n`c d` an\nodd ` of\none\n");
 }
 

@@ -1,5 +1,6 @@
 /* Conditions under which results of engine dem are valid (engine/condition.h). */
 #include <math.h>
+#include <stdio.h>
 
 #include "engine/condition.h"
 #include "engine/dem/run/run.h"
@@ -17,6 +18,11 @@ static double drift(const struct condition_run *r) {
 static double step_before(const void *inputs) {
   const struct dem_inputs *in = inputs;
   return in->fidelity.time_step / dem_describe_stable_step(in);
+}
+
+static void step_estimated(const void *inputs, FILE *out) {
+  (void)inputs;
+  fputs(", estimated from the stiffness of the beams: each body has its own limit", out);
 }
 
 static double step_after(const struct condition_run *r) {
@@ -248,7 +254,7 @@ const struct condition dem_conditions[] = {
               .doubt = "energy may drift",
               .reason = "Verlet's energy drifts by 1 % in some runs from 0.28 on (tests/extremes/map.md)",
               .remedy = "give a fidelity.time_step of a tenth of the stable step", .before = step_before,
-              .after = step_after),
+              .beside = step_estimated, .after = step_after),
     CONDITION("turn", .number = "the error of the angular momentum", .bound = 0.01,
               .doubt = "bodies turn by numerical errors", .reason = "our choice, as for the energy ledger",
               .remedy = "give a shorter fidelity.time_step", .after = angular),
