@@ -197,9 +197,11 @@ static status check_unit(const struct field *row, const char *text, struct error
     return status_fail(error, STATUS_CONTENT, "%s: %.*s is a percentage or a fraction; write '%.*s %%' or '%s %%'",
                        row->path, length, text, length, text, percent);
   }
-  if (usual)
+  if (usual) {
+    const bool large = fabs(strtod(text, NULL)) >= 1e4; /* 3e8 are pascals, not gigapascals */
     return status_fail(error, STATUS_CONTENT, "%s: %.*s has no unit; write '%.*s %s' or '%.*s %s'", row->path, length,
-                       text, length, text, usual, length, text, unit);
+                       text, length, text, large ? unit : usual, length, text, large ? usual : unit);
+  }
   return status_fail(error, STATUS_CONTENT, "%s: %.*s has no unit; write '%.*s %s'", row->path, length, text, length,
                      text, unit);
 }

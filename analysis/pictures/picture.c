@@ -24,7 +24,8 @@ static status nothing_to_draw(const struct picture_page *page, struct error *err
 
 /* ---- means over an input, with their intervals: one line for each value of a second input ---- */
 
-static const double LOG_FROM = 20; /* x is logarithmic if its ends differ by at least this factor */
+static const double LOG_FROM = 20; /* an axis is logarithmic if its ends differ by at least this factor, and if the
+                                    * median of its values is nearer to the middle of such an axis */
 
 static const double none_of_seven[7] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
 
@@ -52,9 +53,11 @@ static void write_curve(struct chart *chart, const struct picture_curve *curve) 
   chart_block_end(chart);
 }
 
-/* Writes the range of the axis 'x' or 'y', with some space at both ends. */
-static void write_range(struct chart *chart, char axis, const double range[2]) {
-  const bool logarithmic = range[0] > 0 && range[1] >= LOG_FROM * range[0];
+/* Writes the range of the axis 'x' or 'y', with some space at both ends. `median`: of its values; NaN: not known. */
+static void write_range(struct chart *chart, char axis, const double range[2], double median) {
+  const double even = fabs((median - range[0]) / (range[1] - range[0]) - 0.5);
+  const double by_factors = fabs(log(median / range[0]) / log(range[1] / range[0]) - 0.5);
+  const bool logarithmic = range[0] > 0 && range[1] >= LOG_FROM * range[0] && !(even < by_factors);
   double margin = 0.05 * (range[1] - range[0]);
   if (!(margin > 0))
     margin = range[1] != 0 ? 0.05 * fabs(range[1]) : 1;
@@ -81,7 +84,7 @@ status picture_curves(const struct picture_page *page, const struct picture_word
   struct chart *chart = chart_new("lines", page, words);
   chart_number(chart, "series", (double)count);
   const size_t places = curve[0].places;
-  write_range(chart, 'x', places > 0 ? (double[2]){0.5, (double)places + 0.5} : range);
+  write_range(chart, 'x', places > 0 ? (double[2]){0.5, (double)places + 0.5} : range, NAN);
   chart_number(chart, "places", (double)places);
   chart_texts(chart, "place", places, curve[0].place);
   for (size_t c = 0; c < count; c++) {
@@ -289,7 +292,8 @@ enum {
 static void write_points(struct chart *chart, const struct map *map, size_t count, const struct picture_tile *tiles) {
   for (int a = 0; a < 2; a++) {
     const struct axis *axis = a ? &map->y : &map->x;
-    write_range(chart, a ? 'y' : 'x', (const double[2]){axis->values[0], axis->values[axis->count - 1]});
+    write_range(chart, a ? 'y' : 'x', (const double[2]){axis->values[0], axis->values[axis->count - 1]},
+                axis->values[axis->count / 2]);
   }
   chart_columns(chart, "x y value doubtful decimals kind");
   for (size_t i = 0; i < count; i++)

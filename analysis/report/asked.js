@@ -19,7 +19,8 @@ function varied(store) {
   return store.axes.map((axis) => {
     const values = [...new Set(store.points.map((point) => inUnit([store], axis.column_name, point[axis.column_name])))];
     const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
-    const shown = values.length <= 8 ? values.map((value) => number(value)).join(', ')
+    const listed = numbers.length === values.length ? numbers : values;
+    const shown = values.length <= 8 ? listed.map((value) => number(value)).join(', ')
       : `${values.length} values from ${number(numbers[0])} to ${number(numbers[numbers.length - 1])}`;
     const path = element('span', {}, ...axis.path.split(/(?<=\.)/).flatMap((part) => [element('wbr'), part])); // lines end between its words
     return [path, shown, unitOf([store], axis.column_name), axis.meaning];

@@ -76,9 +76,10 @@ export function wrapped(title, figure) {
   }, ['']);
 }
 
-// A scale of positive numbers that span a factor of 20 is logarithmic.
+// A scale of positive numbers that span a factor of 20 is logarithmic, if their median is nearer to the middle of such a scale.
 export function scale(values) {
-  const numbers = values.filter((value) => typeof value === 'number');
-  const low = Math.min(...numbers), high = Math.max(...numbers);
-  return low > 0 && high / low >= 20 ? {type: 'log', nice: false} : {zero: false};
+  const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
+  const low = numbers[0], high = numbers[numbers.length - 1], median = numbers[Math.floor(numbers.length / 2)];
+  const even = Math.abs((median - low) / (high - low) - 0.5), byFactors = Math.abs(Math.log(median / low) / Math.log(high / low) - 0.5);
+  return low > 0 && high / low >= 20 && even >= byFactors ? {type: 'log', nice: false} : {zero: false};
 }

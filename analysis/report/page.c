@@ -35,7 +35,7 @@ status page_empty(unsigned char **html, size_t *size, struct error *error) {
   return status_fail(
       error, STATUS_MISSING,
       "%sshare/clast/report.html: the empty page is missing. npm makes it (`apt-get install nodejs npm`) when "
-      "all of clast is built: `./setup.sh build`",
+      "all of clast is built: `./setup.sh build` in the folder with the sources of clast",
       program);
 }
 

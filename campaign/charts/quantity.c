@@ -9,6 +9,7 @@
 #include "analysis/statistics/statistics.h"
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/table.h"
+#include "campaign/terminal/words.h"
 #include "db/ask/ask.h"
 #include "db/store/views.h"
 #include "engine/grow.h"
@@ -212,10 +213,11 @@ status quantity_tell_idle(struct store *store, struct error *error) {
   char idle[ASK_GROUP_POOLED];
   TRY(ask_group_idle(store, idle, error));
   if (*idle)
-    fprintf(
-        stderr,
-        "clast: no effect in these runs: %s (runs that differ in it alone have the same results, to the last bit)\n",
-        idle);
+    words_print(stderr, "",
+                "clast: no effect in these runs: %s (runs that differ in it alone have the same results, to the last "
+                "bit). Where points are pooled over it, copies count as points of their own, and the interval is too "
+                "narrow: --where chooses one value",
+                idle);
   return STATUS_OK;
 }
 

@@ -126,17 +126,17 @@ static struct picture_series series_of(const struct curve *curve) {
 }
 
 /* Is a pure power law enough? Likelihood ratios against two rivals, in the same windows. */
-static void print_rivals(const struct pooled_rivals *rivals) {
+static void print_rivals(const struct pooled_rivals *rivals, const char *kg) {
   if (rivals->n == 0 || !isfinite(rivals->cutoff_beta))
     return;
   printf("  exponential cut-off: ");
   if (isfinite(rivals->cutoff_mass))
-    printf("beta %.2f, cut-off mass %.3g, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
-           rivals->cutoff_ratio, rivals->cutoff_p);
+    printf("F(m) ~ m^-%.2f exp(-m/m_c), m_c %.3g %s, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
+           kg, rivals->cutoff_ratio, rivals->cutoff_p);
   else
     printf("none seen below the largest fragments; with them p %.2g (small p: needed)\n", rivals->open_cutoff_p);
-  printf("  lognormal: 2 dlnL %.1f, p %.2g (small p: better than the pure power law)\n", rivals->lognormal_ratio,
-         rivals->lognormal_p);
+  printf("  lognormal: 2 dlnL %.1f, p %.2g (dlnL: gain in log likelihood; small p: better than the pure power law)\n",
+         rivals->lognormal_ratio, rivals->lognormal_p);
 }
 
 struct curves {
@@ -234,7 +234,7 @@ static void print_plots(const struct curves *curves, bool ascii) {
     text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),
                        curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L) [1/m]" : per_mass),
                        &curve->form, &series);
-    print_rivals(&curve->rivals);
+    print_rivals(&curve->rivals, ask_pool_mass_unit(curve->form.size.dimensions));
   }
 }
 

@@ -520,14 +520,13 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   else
     advise_seeds(accuracy, best, next, sizeof next);
   if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
-    text_append(more, sizeof more, "allow more, such as %.2g; or ", 1.3 * least);
-  return status_fail(error, STATUS_CONTENT,
-                     "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64
-                     " seeds). The smallest error is "
-                     "%s%.2g%s, with %s. %s. Or %sask for the least error in a time: `clast plan %s --within 10min`",
-                     quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n,
-                     best->open ? "about " : "", least, best->open ? " (a guess, as no limit is seen)" : "", chosen,
-                     next, more, path);
+    text_append(more, sizeof more, "allow more, such as %.2g, or ", 1.3 * least);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64 " seeds). The smallest error is "
+      "%s%.2g%s, with %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
+      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->open ? "about " : "",
+      least, best->open ? " (a guess, as no limit is seen)" : "", chosen, next, more, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {

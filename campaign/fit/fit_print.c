@@ -264,6 +264,43 @@ static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
                 list_mixed(fit, direction, names), list_ends(fit, direction, ends));
 }
 
+/* Inputs whose posterior is narrow across a line, though wide along it: the two with the largest correlation, and the
+ * line's ends at the 5 and 95 % quantiles of the first. */
+static bool tell_line(const struct fit *fit, FILE *out) {
+  static const double LEAST = 0.8; /* correlation; our choice: the line then is half as wide as long, or less */
+  const size_t p = fit->inputs;
+  double mean[INFERENCE_INPUTS], covariance[INFERENCE_INPUTS * INFERENCE_INPUTS], most = 0;
+  size_t a = 0, b = 0;
+  posterior_moments(&fit->posterior, mean, covariance);
+  for (size_t i = 0; i < p; i++)
+    for (size_t j = 0; j < i; j++) {
+      const double r = covariance[i * p + j] / sqrt(covariance[i * p + i] * covariance[j * p + j]);
+      if (fabs(r) > fabs(most)) {
+        most = r;
+        a = j;
+        b = i;
+      }
+    }
+  if (!(fabs(most) >= LEAST))
+    return false;
+  char unit[2][64], ends[2][200];
+  for (int end = 0; end < 2; end++) {
+    const double at = posterior_quantile(&fit->posterior, a, end ? 0.95 : 0.05);
+    const double with = mean[b] + covariance[a * p + b] / covariance[a * p + a] * (at - mean[a]);
+    const double one[2] = {shown_unit(fit, a, unit[0]), shown_unit(fit, b, unit[1])};
+    for (int k = 0; k < 2; k++)
+      unit[k][0] = strcmp(unit[k], "1") == 0 ? '\0' : unit[k][0];
+    snprintf(ends[end], sizeof ends[end], "%.3g%s%s with %.3g%s%s", fit_number(fit, a, at) / one[0],
+             *unit[0] ? " " : "", unit[0], fit_number(fit, b, with) / one[1], *unit[1] ? " " : "", unit[1]);
+  }
+  words_print(
+      out, "",
+      "RIDGE: %s and %s change together (correlation of the posterior %.2f): %s gives about the same as %s. The "
+      "priors set the ends of this line. State the two together, or measure something that changes along it.",
+      row_of(fit, a)->path, row_of(fit, b)->path, most, ends[0], ends[1]);
+  return true;
+}
+
 /* The answer: each input with its interval, and what the data determine; or that no inputs give what was measured. */
 static void tell_determined(const struct fit *fit, FILE *out) {
   const size_t known = fit->found.determined, p = fit->inputs;
@@ -288,11 +325,12 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
   }
   words_print(out, "", "%s: median and 90 %% interval.", found);
+  if (known == p && as_wide && tell_line(fit, out))
+    return;
   if (known == p && as_wide)
     words_print(out, "",
                 "The data tell more than the priors at most places, and yet they leave an input its whole range (share "
-                "of prior): "
-                "inputs that are far apart give what was measured.");
+                "of prior): inputs that are far apart give what was measured.");
   else if (known == p)
     words_print(out, "", "The data determine %s: in every direction they tell more than the priors.",
                 p == 1 ? "the input" : "all inputs");

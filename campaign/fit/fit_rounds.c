@@ -187,16 +187,48 @@ static status after_ensemble(struct fit *fit, struct error *error) {
   return STATUS_OK;
 }
 
+/* Are the inputs the same to the digits that they are written with? */
+static bool same_place(const struct fit *fit, const double *a, const double *b) {
+  for (size_t i = 0; i < fit->inputs; i++) {
+    struct field_value p, q;
+    fit_value(fit, i, a[i], &p);
+    fit_value(fit, i, b[i], &q);
+    if (!field_same_value(fit->campaign->axes[fit->axis[i]].row, &p, &q))
+      return false;
+  }
+  return true;
+}
+
+/* Was member j drawn at the place of an earlier point? A narrow ensemble or posterior has few places. Its runs are the
+ * same, and would be counted twice. */
+static bool is_copy(const struct fit *fit, size_t j) {
+  const double *place = fit->place + j * fit->inputs;
+  bool copy = false;
+  for (size_t i = 0; i < fit->points && !copy; i++)
+    copy = same_place(fit, fit->z + i * fit->inputs, place);
+  for (size_t i = 0; i < j && !copy; i++)
+    copy = same_place(fit, fit->place + i * fit->inputs, place);
+  return fit->phase != FIT_ENSEMBLE && copy; /* a Kalman step needs every member */
+}
+
 static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
   struct fit *fit = context;
   const size_t size = fit->observed->datum_count * fit->replicates; /* values of a point */
-  for (size_t j = 0; j < fit->members; j++)
-    TRY(read_point(fit, scheduler->store, fit->place + j * fit->inputs, fit->values + (fit->points + j) * size, error));
-  if (++fit->shot < fit->observed->shot_count)
+  size_t kept = fit->points;
+  const bool last = fit->shot + 1 == fit->observed->shot_count;
+  for (size_t j = 0; j < fit->members; j++) {
+    const double *place = fit->place + j * fit->inputs;
+    if (is_copy(fit, j))
+      continue;
+    TRY(read_point(fit, scheduler->store, place, fit->values + kept * size, error));
+    if (last)
+      memcpy(fit->z + kept * fit->inputs, place, fit->inputs * sizeof *fit->z);
+    kept++;
+  }
+  fit->shot = last ? 0 : fit->shot + 1;
+  if (!last)
     return STATUS_OK;
-  fit->shot = 0;
-  memcpy(fit->z + fit->points * fit->inputs, fit->place, fit->members * fit->inputs * sizeof *fit->z);
-  fit->points += fit->members;
+  fit->points = kept;
   return after_ensemble(fit, error);
 }
 

@@ -100,8 +100,10 @@ status print_ejecta(struct store *store, const struct ask_pool_choice *choice, c
   TABLE table = drawing->text ? NULL : table_new(format, stdout);
   bool known;
   TRY(ask_ejecta_known(store, &known, error));
+  struct ask_pool_choice pool_choice = *choice;
+  pool_choice.inputs = table && table_for_people(format);
   if (known)
-    TRY(take(store, choice, table, curves, error));
+    TRY(take(store, &pool_choice, table, curves, error));
   if (curves->count == 0)
     return status_fail(error, STATUS_USAGE, "no run has ejecta%s",
                        curves->without ? " over their speed: an older clast computed them. Run the campaign in a new "

@@ -294,7 +294,9 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   TRY(ask_pool_dimensions(store, &dimensions, error));
   const char *unit = sizes ? "m" : ask_pool_mass_unit(dimensions);
   const char *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : dimensions == 2 ? "m/kg" : "1/kg";
-  ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);
+  struct ask_pool_choice pool_choice = choice->pool;
+  pool_choice.inputs = people;
+  ASK_POOLS pools = ask_pools(store, &pool_choice, NULL, error);
   TRY(pools.code);
   TABLE table = table_new(format, stdout);
   print_pool_columns(table, &pools);
@@ -368,7 +370,9 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   for (const struct ask_pool *pool; (pool = ask_pools_next(&before));)
     complete = fmax(complete, pool->data.complete_mass); /* fmax ignores a NaN */
   TRY(ask_pools_end(&before));
-  ASK_POOLS pools = ask_pools(store, &choice->pool, NULL, error);
+  struct ask_pool_choice pool_choice = choice->pool;
+  pool_choice.inputs = table_for_people(format);
+  ASK_POOLS pools = ask_pools(store, &pool_choice, NULL, error);
   TRY(pools.code);
   TABLE table = table_new(format, stdout);
   print_pool_columns(table, &pools);

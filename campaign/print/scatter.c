@@ -72,7 +72,9 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
 
 status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
                           struct error *error) {
-  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
+  struct ask_pool_choice pool_choice = choice->pool;
+  pool_choice.inputs = table_for_people(format);
+  ASK_POOLS pools = ask_pools(store, &pool_choice, choice->quantity, error);
   TRY(pools.code);
   TABLE table = table_new(format, stdout);
   struct printing printing = {.people = table_for_people(format), .choice = choice, .table = table, .pools = &pools};
@@ -94,14 +96,15 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
     uncertainty_doubts(&doubts, stderr);
     words_print(
         stderr, "",
-        "clast: low and high: 95 %% intervals over runs; of a mode, the values that belong to it. Modes are peaks; "
-        "p of one peak below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
-        SCATTER_SHAPE_RUNS);
+        "clast: values of %s. low and high: 95 %% intervals over runs; of a mode, the values that belong to it. Modes "
+        "are peaks; p of one peak below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
+        pools.quantity, SCATTER_SHAPE_RUNS);
   }
   if (table_for_people(format) && isfinite(choice->half_width))
     words_print(stderr, "",
-                "clast: runs needed: for this half width in a table, if the scatter stays as it is. seeds.until needs "
-                "more, as it looks for the width in steps of %d runs from %d on and must not end by chance",
+                "clast: runs needed: for this half width in a table, and until seeds.until ends, if the scatter stays "
+                "as it is. The "
+                "rule looks in steps of %d runs from %d on, takes the interval of Student and must not end by chance",
                 SAMPLE_BATCH, SAMPLE_FIRST);
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
@@ -696,11 +699,10 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
     return STATUS_OK;
   words_print(
       stderr, "",
-      "clast: shares of the variance that an input explains alone, with 95 %% intervals, of %zu points%s; what the "
-      "shares leave is of inputs together%s. The whole is that of inputs which do not move together by chance, as "
-      "those of these points do. rank: inputs "
-      "with "
-      "overlapping intervals share it. Four times the points halve the intervals",
+      "clast: share: the part of the variance that an input alone explains, with its 95 %% interval, from %zu "
+      "points%s. "
+      "What the shares leave is the effect of inputs together%s. rank: inputs with overlapping intervals share it. "
+      "Four times the points halve the intervals",
       p.data.points,
       p.data.most > 1
           ? ". Share of means: of the variance of the means over seeds; share of runs: of single runs, with "

@@ -64,7 +64,7 @@ static const char between_statements[] = " \t\n\v\f\r;";
 static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
   const int offset = sqlite3_error_offset(db);
   if (offset >= 0 && (size_t)offset < strlen(sql))
-    return status_fail(error, STATUS_USAGE, "SQL error: %s, at: %.40s", sqlite3_errmsg(db), sql + offset);
+    return status_fail(error, STATUS_USAGE, "SQL error: %s, at: %.200s", sqlite3_errmsg(db), sql + offset);
   return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
 }
 

@@ -503,6 +503,7 @@ struct ask_pool_choice {
   int64_t point;  /* only this point; 0: all */
   const char *by; /* comma-separated varied inputs (see ask_group): points that share them are one pool; NULL: a pool
                      per point */
+  bool inputs;    /* without `by`: the pools' columns are all varied inputs */
 };
 
 enum { ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
@@ -512,7 +513,7 @@ struct ask_pool {
   size_t points;
   int64_t *point;                  /* numbers of the points */
   size_t *first_run;               /* points + 1: the runs of point p are first_run[p] .. first_run[p + 1] - 1 */
-  const struct query_value *input; /* of the axes of `by` */
+  const struct query_value *input; /* of the axes */
   /* without a quantity: fragments of all runs, point after point; complete_mass and element_mass are those of the point
    * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
   struct point_data data;
@@ -528,7 +529,7 @@ struct ask_pools {
   bool of_values;
   char quantity[ASK_GROUP_NAME]; /* column of the values */
   struct sample_range range;     /* they are within it */
-  size_t axes;                   /* of `by`, and their columns */
+  size_t axes;                   /* of `by` or all, and their columns */
   char column[LIMITS_AXES_OF_POOL][ASK_GROUP_NAME];
   struct ask_pool_member *list;
   size_t count, room, next;

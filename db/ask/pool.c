@@ -38,8 +38,11 @@ static status find_members(struct ask_pools *pools, struct error *error) {
   sqlite3_str_appendall(sql, " GROUP BY point_id");
   write_axes(sql, pools, false);
   sqlite3_str_appendall(sql, " ORDER BY ");
-  write_axes(sql, pools, true);
-  sqlite3_str_appendall(sql, pools->axes ? ", point_id" : "point_id");
+  if (pools->choice.by) {
+    write_axes(sql, pools, true);
+    sqlite3_str_appendall(sql, ", ");
+  }
+  sqlite3_str_appendall(sql, "point_id");
   ANSWER answer = answer_to(pools->store, error, "%z", sqlite3_str_finish(sql));
   while (answer_next(&answer)) {
     TRY(grow_or_fail(&pools->list, &pools->room, pools->count + 1, sizeof *pools->list, the_pools, error));
@@ -189,6 +192,14 @@ status ask_pools_end(struct ask_pools *pools) {
   return pools->code;
 }
 
+static status all_inputs(struct ask_pools *pools, struct error *error) {
+  struct ask_column axes[LIMITS_AXES_OF_POOL];
+  TRY(ask_columns_axes(pools->store, true, LIMITS_AXES_OF_POOL, axes, &pools->axes, error));
+  for (size_t a = 0; a < pools->axes; a++)
+    memcpy(pools->column[a], axes[a].name, sizeof pools->column[a]);
+  return STATUS_OK;
+}
+
 static status begin(struct ask_pools *pools, const char *quantity, struct error *error) {
   TRY(ask_register_functions(pools->store, error));
   if (quantity)
@@ -196,6 +207,8 @@ static status begin(struct ask_pools *pools, const char *quantity, struct error 
   pools->range = views_range(pools->quantity);
   if (pools->choice.by)
     TRY(ask_group_columns(pools->store, pools->choice.by, LIMITS_AXES_OF_POOL, pools->column, &pools->axes, error));
+  else if (pools->choice.inputs)
+    TRY(all_inputs(pools, error));
   return find_members(pools, error);
 }
 

@@ -962,8 +962,7 @@ const struct condition sph_conditions[] = {
               .remedy = "take more particles, or fidelity.graded: true where it is false",
               .results = "crater.depth crater.radius crater.volume", .after = shallow),
     CONDITION("growing",
-              .number =
-                  "the way that the floor of the crater would move in the simulated time once more, over its depth,",
+              .number = "how far the floor of the crater would still move in as much time again, over its depth,",
               .bound = 0.1, .doubt = "the crater still grows, and pores still close",
               .reason = "porous-target with 4000 particles: the depth is 18, 4 and 0 % below its final value at 0.16, "
                         "0.10 and 0.001, the volume of closed pores 21, 5 and 0 %",
