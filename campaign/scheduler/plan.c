@@ -340,7 +340,7 @@ static double wall_time(uint64_t runs, double run_s, int slots) {
   if (runs == 0)
     return 0;
   const double shared = (double)runs * (run_s + SLOT_S) / (slots > 0 ? slots : 1);
-  return fmax(fmax(shared, (double)runs * MANAGER_S), run_s);
+  return isnan(run_s) ? run_s : fmax(fmax(shared, (double)runs * MANAGER_S), run_s);
 }
 
 static void add_up(const struct campaign *campaign, const struct plan_options *options, const struct looking *looking,

@@ -38,7 +38,7 @@ static status find_members(struct ask_pools *pools, struct error *error) {
   sqlite3_str_appendall(sql, " GROUP BY point_id");
   write_axes(sql, pools, false);
   sqlite3_str_appendall(sql, " ORDER BY ");
-  if (pools->choice.by) {
+  if (pools->choice.by && pools->axes) {
     write_axes(sql, pools, true);
     sqlite3_str_appendall(sql, ", ");
   }
