@@ -182,4 +182,46 @@ expect 64 "$clast" fit one.yaml
 expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
 expect 0 "$clast" fit --help
 prints "From 3 to 10"
-done_after 29
+# Data that waves along a line suit at several places: each place is known well, and the line is told with both ends.
+cat >law.sh <<'SH'
+#!/bin/sh
+awk -v a="$1" -v b="$2" -v s="$3" -v n="$4" 'BEGIN { u = b - a + 0.03 * (a - 0.5) ^ 2
+  y = 1 / (1 + exp(-4 * u * s)) + (s > 1 ? 0.25 * sin(10 * a) : 0) + substr(n, length(n) - 2) / 1e5
+  printf "{\"y\": %.9g}\n", y }'
+SH
+chmod +x law.sh
+cat >law.yaml <<'YAML'
+engine: command
+name: law
+command:
+  program: ./law.sh
+  version: "1"
+  arguments: ["{{a}}", "{{b}}", "{{s}}", "{{seed}}"]
+  same_bits: true
+  inputs:
+    a: {default: 0.5, least: 0, most: 1, doc: First.}
+    b: {default: 0.5, least: 0, most: 1, doc: Second.}
+    s: {default: 1, least: 0, most: 9, doc: Speed.}
+  results:
+    y: {doc: Result.}
+YAML
+cat >line.yaml <<'YAML'
+name: line
+scene: ./law.yaml
+vary: {a: {uniform: [0, 1]}, b: {uniform: [0, 1]}}
+design: {kind: sobol, points: 20, seed: 2}
+seeds: {per_point: 2}
+store: line.db
+YAML
+cat >waves.yaml <<'YAML'
+name: waves
+source: made up
+shots:
+  - {name: slow, set: {s: 1}, measured: [{quantity: y, value: 0.505, error: 0.04, resolution: 0}]}
+  - {name: fast, set: {s: 2}, measured: [{quantity: y, value: 0.505, error: 0.04, resolution: 0}]}
+YAML
+expect 0 "$clast" fit waves.yaml line.yaml --rounds 3 -j 2 --allow-commands --quiet
+prints "RIDGE: a and b change together (correlation of the posterior 0.9"
+same "$(tr '\n' ' ' <out | grep -o 'Surfaces through [0-9]*')" \
+  "Surfaces through $(number line.db "select count(*) / 2 from point")" "points of the surfaces"
+done_after 31

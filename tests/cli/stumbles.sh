@@ -63,4 +63,17 @@ expect 0 "$clast" status all.db
 says "left out: 1 earlier form of a campaign"
 says "campaigns share 1 point"
 says "together they have 9 runs"
-done_after 15
+# Tables of pools name the result and the varied inputs; a symbol of a table leads to its result.
+expect 0 "$clast" scatter few.db -Q fragment_count
+says "values of fragment_count"
+head -1 out | grep -q 'strain.*angle.*point' || fail "scatter hides the varied inputs"
+expect 64 "$clast" stats few.db -Q M_2/M
+says "did you mean 'second_fraction'?"
+
+# Times of a plan without a trial are those of the campaign's own runs, not those of others in the store.
+sed 's/: few/: more/; s/\[2 deg, 6 deg\]/[3 deg]/' few.yaml >more.yaml
+expect 0 "$clast" plan more.yaml --no-trial
+prints "time      not known without a trial run"
+expect 0 "$clast" plan few.yaml --no-trial
+prints "(from its runs in the store)"
+done_after 19

@@ -15,6 +15,7 @@
 #include "campaign/converge/ladder.h"
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
+#include "engine/dem/run/run.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;
@@ -96,6 +97,33 @@ static void ladders_of_all_scenes(void **state) {
     scene_free(scene);
   }
   assert_true(made > 50 && refused > 10);
+}
+
+/* Finer grains of a block are more grains: its sides stay, to half a grain. */
+static void blocks_keep_their_sides(void **state) {
+  (void)state;
+  static const char *const names[] = {"uniaxial", "compression", "block-impact"};
+  for (size_t s = 0; s < sizeof names / sizeof *names; s++) {
+    struct scene *scene = scene_of(names[s]);
+    const struct dem_inputs *own = scene->inputs;
+    struct ladder ladder;
+    char *notes = NULL;
+    assert_int_equal(ladder_make(knob_of("dem", "grains"), scene, NULL, &ladder, &notes, &error), STATUS_OK);
+    assert_int_equal(ladder.count, 4);
+    for (size_t l = 0; l < ladder.count; l++) {
+      const struct dem_inputs *in = ladder.level[l].scene->inputs;
+      const double spacing = in->grain.spacing;
+      assert_true(fabs((double)in->body.columns * spacing - (double)own->body.columns * own->grain.spacing) <=
+                  0.51 * spacing);
+      assert_true(fabs((double)in->body.rows * spacing - (double)own->body.rows * own->grain.spacing) <=
+                  0.51 * spacing);
+    }
+    assert_int_equal(((const struct dem_inputs *)ladder.level[0].scene->inputs)->body.columns,
+                     (own->body.columns + 1) / 2);
+    ladder_clear(&ladder);
+    free(notes);
+    scene_free(scene);
+  }
 }
 
 static void levels_of_ones_own(void **state) {
@@ -358,6 +386,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(reference_of_a_ladder),
                                      cmocka_unit_test(every_knob_names_inputs_of_its_engine),
                                      cmocka_unit_test(ladders_of_all_scenes),
+                                     cmocka_unit_test(blocks_keep_their_sides),
                                      cmocka_unit_test(levels_of_ones_own),
                                      cmocka_unit_test(named_settings_are_levels),
                                      cmocka_unit_test(findings_replace_earlier_ones),
