@@ -109,6 +109,9 @@ struct picture_choice {
   double width;               /* width of a body's picture, pixels; 0: default */
 };
 
+/* "812 µs", "10 ms"; "" of a time that is not finite. */
+void picture_draw_time(double seconds, char text[32]);
+
 /* STATUS_USAGE: options that do not suit the file; also the statuses of analysis/pictures/picture.h. */
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options, struct error *error);
 

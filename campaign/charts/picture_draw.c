@@ -54,8 +54,7 @@ static void tell_doubts(const char *fields, const struct movie *movie, char text
     uncertainty_doubts(&doubts, stderr);
 }
 
-/* "812 µs", "10 ms" */
-static void write_time(double seconds, char text[32]) {
+void picture_draw_time(double seconds, char text[32]) {
   static const char *const unit[] = {"s", "ms", "\xc2\xb5s", "ns"};
   size_t k = 0;
   text[0] = 0;
@@ -77,7 +76,7 @@ static void name_run(const char *fields, const struct movie *movie, const char *
   snprintf(text, size, "%.*s", length < 32 ? (int)length : 0, base);
   if (*engine)
     text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
-  write_time(time, shown);
+  picture_draw_time(time, shown);
   if (*shown && !(movie && movie->sheet))
     text_append(text, size, ", %s", shown);
 }
@@ -131,7 +130,7 @@ static status draw_grains(const char *fields, const char *picture, const struct 
   panel.frame = movie ? &movie->frame : NULL;
   if (movie && movie->sheet) {
     const char *largest = strstr(numbers, "largest");
-    write_time(time, caption);
+    picture_draw_time(time, caption);
     text_append(caption, sizeof caption, "; %s", largest ? largest : "");
     code = picture_fragments_on_sheet(movie->sheet, options->caption ? options->caption : title, caption, &panel,
                                       error);
@@ -209,7 +208,7 @@ static status draw_particles(const char *fields, const char *picture, const stru
   TRY(read_quantity(fields, options->what != NULL, &cloud, &what, unit, error));
   name_look(fields, movie, &look, &cloud, title, sizeof title);
   if (movie && movie->sheet)
-    write_time(cloud.time, numbers);
+    picture_draw_time(cloud.time, numbers);
   else
     picture_particles_numbers(&cloud, numbers, sizeof numbers);
   if (picture)
