@@ -267,7 +267,7 @@ static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
 /* Inputs whose posterior is narrow across a line, though wide along it: the two with the largest correlation, and the
  * line's ends at the 5 and 95 % quantiles of the first. */
 static bool tell_line(const struct fit *fit, FILE *out) {
-  static const double LEAST = 0.8; /* correlation; our choice: the line then is half as wide as long, or less */
+  static const double LEAST = 0.8; /* correlation; our choice: the posterior then is a third as wide as long, or less */
   const size_t p = fit->inputs;
   double mean[INFERENCE_INPUTS], covariance[INFERENCE_INPUTS * INFERENCE_INPUTS], most = 0;
   size_t a = 0, b = 0;

@@ -174,7 +174,8 @@ struct looking {
   size_t sampled;
   struct scene *costliest;     /* the point with the most work; owned */
   uint64_t asked, there;       /* runs looked up in the store */
-  double wall_s, wall_s_most;  /* of those that are there: sum and longest */
+  uint64_t timed;              /* of those that are there, with their times: */
+  double wall_s, wall_s_most;  /* sum and longest */
   uint8_t seen[LOOKED_AT][16]; /* identities of the points' first runs */
   size_t seen_count;
 };
@@ -199,9 +200,12 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
     looking->asked++;
     double seconds = NAN;
     struct error ignored;
-    if (!store_has_run(store, identity) || ask_run_wall_time(store, identity, &seconds, &ignored) || isnan(seconds))
+    if (!store_has_run(store, identity))
       continue;
     looking->there++;
+    if (ask_run_wall_time(store, identity, &seconds, &ignored) || isnan(seconds))
+      continue;
+    looking->timed++;
     looking->wall_s += seconds;
     looking->wall_s_most = fmax(looking->wall_s_most, seconds);
   }
@@ -358,8 +362,8 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
       plan->run_s_most = fmax(plan->run_s_most, plan->run_s_mean);
     }
     plan->disk_bytes = (double)plan->runs_most * (BYTES_PER_RUN + BYTES_PER_FRAGMENT * (double)fragments);
-  } else if (looking->there) {
-    plan->run_s_mean = looking->wall_s / (double)looking->there;
+  } else if (looking->timed) {
+    plan->run_s_mean = looking->wall_s / (double)looking->timed;
     plan->run_s_most = looking->wall_s_most;
   }
   plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
