@@ -76,4 +76,9 @@ expect 0 "$clast" plan more.yaml --no-trial
 prints "time      not known without a trial run"
 expect 0 "$clast" plan few.yaml --no-trial
 prints "(from its runs in the store)"
-done_after 19
+# Documents of scenes have lines that a terminal shows.
+for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
+  [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
+done
+ok "scenes in lines"
+done_after 20
