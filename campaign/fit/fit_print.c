@@ -234,36 +234,6 @@ static const char *list_ends(const struct fit *fit, size_t direction, char text[
 /* The interval of an input counts as that of its prior when it keeps this share of the prior's width. */
 static const double AS_WIDE = 0.9;
 
-static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
-  char names[PARAGRAPH], ends[PARAGRAPH];
-  const double information = fit->found.direction[direction].information, given = 100 * information / (1 + information);
-  list_mixed(fit, direction, names);
-  if (count_mixed(fit, direction) > 1) {
-    words_print(
-        out, "",
-        "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
-        "Along this line the data give %.0f %% of what is known, the priors the rest: the priors set its ends. State "
-        "the inputs together, or measure something that changes along it.",
-        names, list_ends(fit, direction, ends), given);
-    return;
-  }
-  size_t input = 0;
-  while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
-    input++;
-  words_print(out, "", "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest%s", names,
-              given,
-              fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (share of prior)."
-                                               : ": its interval is that of the prior.");
-}
-
-/* What the data determine of several inputs together, though not of each. */
-static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
-  char names[PARAGRAPH], ends[PARAGRAPH];
-  if (count_mixed(fit, direction) > 1)
-    words_print(out, "", "TOGETHER: the data determine %s together, to one standard deviation on either side: %s.",
-                list_mixed(fit, direction, names), list_ends(fit, direction, ends));
-}
-
 /* Inputs whose posterior is narrow across a line, though wide along it: the two with the largest correlation, and the
  * line's ends at the 5 and 95 % quantiles of the first. */
 static bool tell_line(const struct fit *fit, FILE *out) {
@@ -299,6 +269,38 @@ static bool tell_line(const struct fit *fit, FILE *out) {
       "priors set the ends of this line. State the two together, or measure something that changes along it.",
       row_of(fit, a)->path, row_of(fit, b)->path, most, ends[0], ends[1]);
   return true;
+}
+
+static void tell_open_direction(const struct fit *fit, size_t direction, FILE *out) {
+  char names[PARAGRAPH], ends[PARAGRAPH];
+  const double information = fit->found.direction[direction].information, given = 100 * information / (1 + information);
+  list_mixed(fit, direction, names);
+  if (count_mixed(fit, direction) > 1) {
+    words_print(
+        out, "",
+        "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
+        "Along this line the data give %.0f %% of what is known, the priors the rest: the priors set its ends. State "
+        "the inputs together, or measure something that changes along it.",
+        names, list_ends(fit, direction, ends), given);
+    return;
+  }
+  if (tell_line(fit, out)) /* a steep line is nearly one input alone */
+    return;
+  size_t input = 0;
+  while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
+    input++;
+  words_print(out, "", "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest%s", names,
+              given,
+              fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (share of prior)."
+                                               : ": its interval is that of the prior.");
+}
+
+/* What the data determine of several inputs together, though not of each. */
+static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
+  char names[PARAGRAPH], ends[PARAGRAPH];
+  if (count_mixed(fit, direction) > 1)
+    words_print(out, "", "TOGETHER: the data determine %s together, to one standard deviation on either side: %s.",
+                list_mixed(fit, direction, names), list_ends(fit, direction, ends));
 }
 
 /* The answer: each input with its interval, and what the data determine; or that no inputs give what was measured. */

@@ -387,6 +387,7 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   struct error ignored = {0};
   size_t fragments = 0;
   const char *path = options->store_path ? options->store_path : campaign->store;
+  plan->store = path;
   status code = store_open_reader(path, &store, error);
   plan->store_exists = code == STATUS_OK;
   if (code != STATUS_OK && code != STATUS_MISSING)
@@ -490,7 +491,7 @@ static void print(const struct campaign *campaign, const struct plan *plan, int 
   print_times(plan, slots, out);
   fprintf(out, "memory    %s per run, %s on all slots\n", bytes(plan->memory_most, a, sizeof a),
           bytes(plan->memory_most * slots, b, sizeof b));
-  fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), campaign->store);
+  fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), plan->store);
   if (campaign->keep != CAMPAIGN_KEEP_NONE)
     fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
   fputc('\n', out);
@@ -532,7 +533,7 @@ char *plan_print_json(const struct campaign *campaign, const struct plan *plan, 
   fputs(", \"scene\": ", out);
   text_json_string(campaign->scene_reference, out);
   fputs(", \"store\": ", out);
-  text_json_string(campaign->store, out);
+  text_json_string(plan->store, out);
   fputs(", \"axes\": [", out);
   for (size_t i = 0; i < campaign->axis_count; i++)
     axis_json(campaign, i, out);

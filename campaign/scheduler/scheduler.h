@@ -233,6 +233,7 @@ struct plan {
   uint64_t points, points_looked_at; /* costs are averaged over the sampled points (at most 4096) */
   uint64_t runs_least, runs_most;    /* differ with `until` */
   uint64_t runs_there;               /* of the sampled points, already in the store */
+  const char *store;                 /* path; borrowed from the campaign or the options */
   bool store_exists;
   bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
   bool trial_whole;     /* times are of whole runs, measured or estimated from a coarse run; else upper bounds */

@@ -76,9 +76,11 @@ expect 0 "$clast" plan more.yaml --no-trial
 prints "time      not known without a trial run"
 expect 0 "$clast" plan few.yaml --no-trial
 prints "(from its runs in the store)"
+expect 0 "$clast" plan few.yaml --no-trial --store elsewhere.db
+prints "for the store elsewhere.db"
 # Documents of scenes have lines that a terminal shows.
 for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 20
+done_after 21
