@@ -235,8 +235,8 @@ static const char *list_ends(const struct fit *fit, size_t direction, char text[
 static const double AS_WIDE = 0.9;
 
 /* Inputs whose posterior is narrow across a line, though wide along it: the two with the largest correlation, and the
- * line's ends at the 5 and 95 % quantiles of the first. */
-static bool tell_line(const struct fit *fit, FILE *out) {
+ * line's ends at the 5 and 95 % quantiles of the first. `of`: only pairs with this input; fit->inputs: all. */
+static bool tell_line(const struct fit *fit, size_t of, FILE *out) {
   static const double LEAST = 0.8; /* correlation; our choice: the posterior then is a third as wide as long, or less */
   const size_t p = fit->inputs;
   double mean[INFERENCE_INPUTS], covariance[INFERENCE_INPUTS * INFERENCE_INPUTS], most = 0;
@@ -245,7 +245,7 @@ static bool tell_line(const struct fit *fit, FILE *out) {
   for (size_t i = 0; i < p; i++)
     for (size_t j = 0; j < i; j++) {
       const double r = covariance[i * p + j] / sqrt(covariance[i * p + i] * covariance[j * p + j]);
-      if (fabs(r) > fabs(most)) {
+      if ((of == p || of == i || of == j) && fabs(r) > fabs(most)) {
         most = r;
         a = j;
         b = i;
@@ -284,11 +284,11 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
         names, list_ends(fit, direction, ends), given);
     return;
   }
-  if (tell_line(fit, out)) /* a steep line is nearly one input alone */
-    return;
   size_t input = 0;
   while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
     input++;
+  if (tell_line(fit, input, out)) /* a steep line is nearly this input alone */
+    return;
   words_print(out, "", "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest%s", names,
               given,
               fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (share of prior)."
@@ -327,7 +327,7 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
   }
   words_print(out, "", "%s: median and 90 %% interval.", found);
-  if (known == p && as_wide && tell_line(fit, out))
+  if (known == p && as_wide && tell_line(fit, p, out))
     return;
   if (known == p && as_wide)
     words_print(out, "",
