@@ -122,7 +122,8 @@ static void keys_of_a_plan(void **state) {
   struct campaign *campaign = NULL;
   struct error error = {0};
   assert_int_equal(campaign_parse("keys.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_OK);
-  struct plan plan = {.points = 1,
+  struct plan plan = {.store = "other.db",
+                      .points = 1,
                       .points_looked_at = 2,
                       .runs_least = 3,
                       .runs_most = 4,
@@ -141,7 +142,7 @@ static void keys_of_a_plan(void **state) {
   char model[] = "grains", *json = plan_print_json(campaign, &plan, 15);
   assert_string_equal(
       json,
-      "{\"campaign\": \"keys\", \"scene\": \"disc-explosion\", \"store\": \"keys.db\", \"axes\": [{\"path\": "
+      "{\"campaign\": \"keys\", \"scene\": \"disc-explosion\", \"store\": \"other.db\", \"axes\": [{\"path\": "
       "\"threshold.strain\", \"unit\": \"1\", \"values\": \"1 %, 2 %\"}, {\"path\": \"contact.law\", \"unit\": \"\", "
       "\"values\": \"off\"}], \"points\": 1, \"points_looked_at\": 2, \"runs_least\": 3, \"runs_most\": 4, "
       "\"runs_there\": 5, \"store_exists\": true, \"trial_made\": false, \"trial_finished\": true, \"slots\": 15, "
