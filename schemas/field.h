@@ -28,10 +28,12 @@ enum field_flags {
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
   FIELD_DERIVED = 16,      /* inputs only: when not given, it follows from other inputs (engine_kind.complete). `number`
                             * is a placeholder until then, and the doc text says what it follows from */
-  FIELD_PERCENT = 32, /* FIELD_REAL of unit "1": a strain or share that users give in percent and that may exceed 1. A
-                         number without % is refused */
-  FIELD_FILE = 64,    /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
-                       * (engine/scene.h) */
+  FIELD_PERCENT = 32,   /* FIELD_REAL of unit "1": a strain or share that users give in percent and that may exceed 1. A
+                           number without % is refused */
+  FIELD_FILE = 64,      /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
+                         * (engine/scene.h) */
+  FIELD_ANY_UNIT = 128, /* FIELD_REAL of unit "1": a number with any unit, turned into SI. Who knows the right unit
+                           reads the text again */
 };
 
 struct field {

@@ -143,7 +143,12 @@ static status parse_real(const struct field *row, const char *text, struct field
     return may_be_off ? STATUS_OK : status_fail(error, STATUS_CONTENT, "%s: cannot be switched off", row->path);
   }
   struct error inner;
+  struct unit written;
   status code = unit_read(text, row->unit ? row->unit : "1", &came->number, &inner);
+  if (code && row->flags & FIELD_ANY_UNIT && unit_parse(unit_of(text), &written, NULL) == STATUS_OK) {
+    came->number = strtod(text, NULL) * written.factor;
+    return STATUS_OK;
+  }
   if (code)
     return status_fail(error, code, "%s: %s%s", row->path, inner.message, may_be_off ? " (or off)" : "");
   return STATUS_OK;

@@ -21,7 +21,8 @@ enum {
   FEWEST_SEEDS = 3,
   MOST_SEEDS = 10000,
   STUDY_SEEDS = 1000, /* a study with more is no advice */
-  LOOKED_AT = 1000
+  LOOKED_AT = 1000,
+  UNIT_TEXT = 32 /* with the space before it */
 };
 
 int64_t accuracy_seeds(double deviation, double margin) {
@@ -502,12 +503,24 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
     snprintf(text, size, "%s = %s", option->knob, setting);
 }
 
+/* The unit of the accurate quantity, with a space before it; "" for plain numbers. */
+static const char *width_unit(const struct campaign *campaign, char text[UNIT_TEXT]) {
+  struct error ignored;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(campaign->scene->kind, campaign->accuracy_quantity, &of_outcome,
+                                              &ignored);
+  const char *unit = row ? field_shown_unit(row) : "";
+  snprintf(text, UNIT_TEXT, "%s%s", *unit ? " " : "", unit);
+  return text;
+}
+
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", share[32] = "", more[64] = "", chosen[256];
+  char next[1600] = "", share[32] = "", more[256] = "", chosen[256], text[UNIT_TEXT];
+  const char *unit = width_unit(campaign, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
@@ -520,13 +533,15 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   else
     advise_seeds(accuracy, best, next, sizeof next);
   if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
-    text_append(more, sizeof more, "allow more, such as %.2g, or ", 1.3 * least);
+    text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %.2g%s}`, or ", quantity,
+                1.3 * least, unit);
   return status_fail(
       error, STATUS_CONTENT,
-      "accuracy: no setting gives %s within %s%.2g%s of its mean %.4g (%" PRId64 " seeds). The smallest error is "
-      "%s%.2g%s, with %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
-      quantity, share, accuracy->within, *share ? ")" : "", accuracy->mean, accuracy->n, best->open ? "about " : "",
-      least, best->open ? " (a guess, as no limit is seen)" : "", chosen, next, more, path);
+      "accuracy: no setting gives %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64 " seeds). The smallest error is "
+      "%s%.2g%s%s, with %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
+      quantity, share, accuracy->within, unit, *share ? ")" : "", accuracy->mean, unit, accuracy->n,
+      best->open ? "about " : "", least, unit, best->open ? " (a guess, as no limit is seen)" : "", chosen, next, more,
+      path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -552,11 +567,16 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   bool guessed = !people; /* people see the guesses if there are any */
   for (size_t i = 0; i < accuracy->count; i++)
     guessed |= accuracy->options[i].beyond > 0;
+  char unit_text[UNIT_TEXT];
+  const char *unit = width_unit(campaign, unit_text) + (*unit_text == ' ');
   TABLE table = table_new(format, out);
-  table_columns(table, (const char *const[]){"choice", "knob", "setting", "error", "known", NULL});
+  table_columns(table, (const char *const[]){"choice", "knob", "setting", NULL});
+  table_column(table, "error", unit);
+  table_column(table, "known", NULL);
   if (guessed)
-    table_column(table, "beyond", NULL);
-  table_columns(table, (const char *const[]){"seeds", "total", NULL});
+    table_column(table, "beyond", unit);
+  table_column(table, "seeds", NULL);
+  table_column(table, "total", unit);
   table_column(table, "run_cpu", "s");
   table_column(table, "point_cpu", "s");
   table_column(table, "run_cost", NULL);
@@ -593,7 +613,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
   const bool in_time = !isnan(accuracy->point_s);
-  char time[32], allowed[32], chosen[256], cost[120] = "";
+  char time[32], allowed[32], chosen[256], cost[120] = "", text[UNIT_TEXT];
+  const char *unit = width_unit(campaign, text);
   name_option(campaign, option, chosen, sizeof chosen);
   if (option->beyond > 0)
     words_print(out, before,
@@ -616,18 +637,19 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     text_append(cost, sizeof cost, timed ? " (%s allowed)" : " (%s of processor time allowed)", allowed);
   const char *const or_more[] = {"", " or more"}, *more = or_more[isnan(option->beyond)];
   words_print(out, before,
-              "%s \xc2\xb1 %.2g%s, resolution %.2g%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
-              campaign->accuracy_quantity, option->total, more, resolution_of(option), more, chosen, option->seeds,
-              cost);
+              "%s \xc2\xb1 %.2g%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
+              campaign->accuracy_quantity, option->total, unit, more, resolution_of(option), unit, more, chosen,
+              option->seeds, cost);
   if (!in_time)
     return;
   bool open[2];
   const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
                twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
-  char in_half[48] = "no result";
+  char in_half[96] = "no result";
   if (!isnan(half))
-    snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s", half, or_more[open[0]]);
-  words_print(out, before, "In half of the time: %s; in twice: \xc2\xb1 %.2g%s", in_half, twice, or_more[open[1]]);
+    snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s%s", half, unit, or_more[open[0]]);
+  words_print(out, before, "In half of the time: %s; in twice: \xc2\xb1 %.2g%s%s", in_half, twice, unit,
+              or_more[open[1]]);
 }
 
 static status alternatives_json(const struct accuracy *accuracy, const struct campaign *campaign, char **json,
@@ -661,15 +683,14 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
   if (print == ACCURACY_NOTE)
     print_choice(&accuracy, campaign, "clast: ", true, stderr);
   if (print == ACCURACY_TEXT) {
-    char within[48] = "";
+    char unit[UNIT_TEXT];
     if (isnan(accuracy.point_s))
-      snprintf(within, sizeof within, " within %.3g", accuracy.within);
-    words_print(stdout, "accuracy  ",
-                "%s%s. error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
-                "point_cpu: by the runs of the study. run_cost: against the smallest error",
-                campaign->accuracy_quantity, within);
+      printf("accuracy  %s within %.3g%s\n", campaign->accuracy_quantity, accuracy.within, width_unit(campaign, unit));
     print_choice(&accuracy, campaign, "accuracy  ", false, stdout);
     TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
+    words_print(stdout, "",
+                "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
+                "point_cpu: by the runs of the study. run_cost: against the smallest error");
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",
                   "The chosen setting is finer than any level that was run. Its error is that of the finest level "

@@ -40,10 +40,10 @@ static const struct field rows[] = {
     TEXT("seeds.until.quantity", until_quantity, .text = "",
          .doc = "The quantity whose mean must be known well enough. Default: the main quantity."),
     ROW("seeds.until.half_width", until_half_width, FIELD_REAL, "1", .number = 0.01, .minimum = 0, .maximum = HUGE_VAL,
-        .flags = FIELD_ABOVE_MINIMUM,
+        .flags = FIELD_ABOVE_MINIMUM | FIELD_ANY_UNIT,
         .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this: a "
-               "number in the SI unit of the quantity, or a share of its mean (5 %). Judged on fixed prefixes of "
-               "replicate numbers.",
+               "value of the quantity (17 MPa; a bare number is in SI units), or a share of its mean (5 %). Judged on "
+               "fixed prefixes of replicate numbers.",
         .source = "Chow & Robbins 1965"),
     ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,
         .flags = FIELD_BELOW_MAXIMUM, .doc = "Confidence level of that interval."),
@@ -54,12 +54,11 @@ static const struct field rows[] = {
     TEXT("accuracy.quantity", accuracy_quantity, .text = "",
          .doc = "The quantity that must be accurate. Default: the main quantity."),
     ROW("accuracy.within", accuracy_within, FIELD_REAL, "1", .number = NAN, .minimum = 0, .maximum = HUGE_VAL,
-        .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+        .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_ANY_UNIT,
         .doc = "Choose settings and number of seeds so that the error of resolution and the 95 % interval of the mean "
-               "together are at most this, at the least processor time: a number in the SI unit of the quantity, or a "
-               "share "
-               "of its mean (5 %). The choice "
-               "comes from a study in the store (`clast converge`). off: settings and seeds are as written."),
+               "together are at most this, at the least processor time: a value of the quantity (17 MPa; a bare number "
+               "is in SI units), or a share of its mean (5 %). The choice comes from a study in the store (`clast "
+               "converge`). off: settings and seeds are as written."),
     ROW("accuracy.processor_time", accuracy_time, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e12,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
         .doc = "Instead of within: choose settings and number of seeds so that the same sum is least for so much "

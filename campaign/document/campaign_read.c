@@ -1,6 +1,7 @@
 /* Reads the document of a campaign: the plain keys by their rows, the keys of several forms by hand. */
 #include "campaign/document/campaign_read.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@
 #include "db/store/store.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
+#include "schemas/unit.h"
 
 static document_node *key_of(document_node *mapping, const char *key) {
   return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
@@ -231,6 +233,22 @@ static const char *main_quantity(const struct campaign *campaign) {
   return scene_headline(campaign->scene);
 }
 
+/* A width with a unit that is not per cent: it is the unit of the quantity. */
+static void check_width(document_node *width, const char *path, const char *quantity, const struct campaign *campaign) {
+  struct error error;
+  struct field_value ignored;
+  bool of_outcome;
+  const char *text = width ? document_scalar(width) : NULL;
+  const struct field *row = campaign_quantity(campaign->scene->kind, quantity, &of_outcome, &error);
+  if (!text || !row || strchr(text, '%') || strcmp(text, "off") == 0 || unit_is_bare(text))
+    return;
+  const struct field in_unit = {.path = path,
+                                .unit = row->unit ? row->unit : "1",
+                                .minimum = -HUGE_VAL,
+                                .maximum = HUGE_VAL};
+  document_value(width, &in_unit, &ignored);
+}
+
 static void check_quantities(document_node *root, struct campaign *campaign) {
   char *const follow[] = {campaign->until_quantity, campaign->accuracy_quantity};
   if (!document_key(root, "quantity"))
@@ -255,6 +273,9 @@ static void check_quantities(document_node *root, struct campaign *campaign) {
   if (until)
     check_quantity(until, "seeds.until.quantity", campaign->until_quantity, campaign);
   document_node *half_width = key_of(key_of(key_of(root, "seeds"), "until"), "half_width");
+  check_width(half_width, "seeds.until.half_width", campaign->until_quantity, campaign);
+  check_width(key_of(document_key(root, "accuracy"), "within"), "accuracy.within", campaign->accuracy_quantity,
+              campaign);
   if (half_width && !campaign->until_of_value && campaign->until_half_width >= 1 &&
       is_share_of(campaign, campaign->until_quantity))
     document_report(

@@ -44,6 +44,7 @@ enum { QUANTITY, VALUE, ERROR, RESOLUTION, SHARE, DATUM_ROWS };
 
 struct fragments {
   double total, complete; /* kg, or kg/m: only their ratios count */
+  double resolution;      /* as a share of each number that follows from the list; NaN: not given */
 };
 
 static const struct field fragments_rows[] = {
@@ -51,6 +52,9 @@ static const struct field fragments_rows[] = {
             .doc = "Mass of the body."),
     REAL_OF(fragments, complete, complete, "kg", 0, 0, HUGE_VAL, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
             .doc = "The list has every fragment from this mass on."),
+    REAL_OF(fragments, resolution, resolution, "1", NAN, 0, HUGE_VAL,
+            .doc = "Standard deviation of the change by a finer resolution, as a share (10 %) of M_1/M and of each "
+                   "number of fragments that follow from the list."),
 };
 static const struct field_table fragments_table = FIELD_TABLE(fragments_rows, struct fragments, "fragments",
                                                               "Masses of the fragments of a shot.");
@@ -142,9 +146,10 @@ static int descending(const void *a, const void *b) {
 /* Takes the largest fragment, and the numbers of fragments above up to four masses. These are evenly spaced in the
  * logarithm, from the second largest fragment to the mass down to which the list is complete. A fragment of just such a
  * mass counts. Rounding must not decide that, so the masses are smaller by a billionth, which no balance resolves. */
-static void take_masses(struct reading *r, document_node *node, size_t count, double *masses, double total,
-                        double complete) {
+static void take_masses(struct reading *r, document_node *node, size_t count, double *masses,
+                        const struct fragments *of) {
   enum { STEPS = 4 };
+  const double total = of->total;
   qsort(masses, count, sizeof *masses, descending);
   struct observed_datum *largest = add_datum(r, node);
   if (!largest)
@@ -152,7 +157,8 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
   snprintf(largest->quantity, sizeof largest->quantity, "%s", OUTCOME_NAME(largest_fraction));
   find_quantity(r, node, largest);
   largest->value = masses[0] / total;
-  const double from = count > 1 ? masses[1] / total : 0, to = complete / total;
+  largest->resolution = of->resolution * largest->value;
+  const double from = count > 1 ? masses[1] / total : 0, to = of->complete / total;
   for (int step = 1; step <= STEPS && from > to * 1.2; step++) {
     struct observed_datum *datum = add_datum(r, node);
     if (!datum)
@@ -162,6 +168,7 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
     datum->share = datum->ask.share = (1 - 1e-9) * from * pow(to / from, (double)step / STEPS);
     for (size_t i = 0; i < count; i++)
       datum->value += masses[i] > datum->share * total;
+    datum->resolution = of->resolution * datum->value;
   }
 }
 
@@ -172,9 +179,9 @@ static void read_fragments(struct reading *r, document_node *node) {
                       .unit = "kg",
                       .maximum = HUGE_VAL,
                       .flags = FIELD_ABOVE_MINIMUM};
-  struct field rows[] = {fragments_rows[0], fragments_rows[1]};
+  struct field rows[] = {fragments_rows[0], fragments_rows[1], fragments_rows[2]};
   struct field_table table = fragments_table;
-  struct fragments from = {0};
+  struct fragments from = {.resolution = NAN};
   document_node *list = document_kind(node) == DOCUMENT_MAPPING ? document_key(node, "masses") : NULL;
   if (!list || document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
     document_report(
@@ -201,7 +208,7 @@ static void read_fragments(struct reading *r, document_node *node) {
     document_report(list, "masses", "the fragments together weigh %.15g %% of the total; expected at most 102 %%",
                     100 * sum / from.total);
   else if (masses && good)
-    take_masses(r, list, count, masses, from.total, from.complete);
+    take_masses(r, list, count, masses, &from);
 }
 
 /* ---- shots ---- */

@@ -388,7 +388,9 @@ static void tell_not_studied(const struct fit *fit, FILE *out) {
   words_print(out, "",
               "RESOLUTION: what a finer resolution would change is not known and counts as 0 for%s. The intervals are "
               "too narrow. Give `resolution` with the value%s.",
-              names, none ? "; no study tells it of fragments above a mass" : "");
+              names,
+              none ? ", or as a share in `fragments:` (resolution: 10 %); no study tells it of fragments above a mass"
+                   : "");
   for (size_t s = 0; s < fit->observed->shot_count; s++)
     tell_study(fit, s, out);
 }

@@ -358,8 +358,11 @@ status option_load_campaign(const char *path, const struct campaign_option *opti
     if (!row)
       return STATUS_INTERNAL;
     if (field_parse(row, option->within, &time, error) != STATUS_OK || field_is_off(time.number))
-      return status_fail(error, STATUS_USAGE, "--within %s: expected a time above 0, such as 2h or 30min",
-                         option->within);
+      return status_fail(
+          error, STATUS_USAGE,
+          "--within %s: expected a time above 0, such as 2h or 30min; the error that you allow stands in "
+          "the campaign: `accuracy: {within: %s}`",
+          option->within, option->within);
     changes.processor_time = time.number * slots;
   }
   return campaign_load_changed(path, &changes, campaign, error);

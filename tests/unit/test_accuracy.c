@@ -198,7 +198,8 @@ static void levels_that_differ_little_are_enough(void **state) {
 }
 
 /* Grains finer than any level, with the same time step: those whose step is above a quarter of the longest stable one
- * (engine/dem/scene/conditions.c) would be marked, so they are no options. Twice as fine: a sixth. */
+ * (engine/dem/scene/conditions.c) would be marked, so they are no options. With 0.0056 m it is a
+ * fifth. */
 static void a_finer_setting_that_would_be_marked_is_none(void **state) {
   (void)state;
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
@@ -208,14 +209,14 @@ static void a_finer_setting_that_would_be_marked_is_none(void **state) {
   add_study(store, campaign, "grains", 5,
             (const struct level[]){{"0.0112", 0.03, 1e-4, 5, true, false, 0.0112},
                                    {"0.008", 0.02, 1e-4, 10, false, false, 0.008},
-                                   {"0.004", 0.014, NAN, NAN, false, false, 0.004},
+                                   {"0.0056", 0.014, NAN, NAN, false, false, 0.0056},
                                    {"0.002", 0.01, NAN, NAN, false, false, 0.002},
                                    {"0.001", 0.007, NAN, NAN, false, false, 0.001}});
   assert_int_equal(store_close(store, &error), STATUS_OK);
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < accuracy.count; i++)
-    assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.004") == 0);
+    assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.0056") == 0);
   accuracy_clear(&accuracy);
   campaign_free(campaign);
 }

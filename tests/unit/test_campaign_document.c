@@ -92,6 +92,14 @@ static void defaults_and_units(void **state) {
     assert_string_equal(campaign->quantity, asked[i][1]);
     campaign_free(campaign);
   }
+  campaign = good("name: t\nscene: compression\naccuracy: {within: 17 MPa}\n");
+  assert_true(campaign->accuracy_within == 17e6 && !campaign->accuracy_of_value);
+  campaign_free(campaign);
+  campaign = good("name: t\nscene: compression\nseeds: {until: {half_width: 2e6}}\n"); /* SI, as ever */
+  assert_true(campaign->until_half_width == 2e6);
+  campaign_free(campaign);
+  bad("name: t\nscene: compression\nseeds: {until: {half_width: 17 m}}\n", "expected a pressure");
+  bad(HEAD "accuracy: {within: 17 MPa}\n", "accuracy.within: expected a plain number");
   campaign = good(HEAD "seeds: 4\n");
   assert_int_equal(campaign_replicates_least(campaign), 4);
   campaign_free(campaign);

@@ -240,6 +240,25 @@ static void what_cannot_run_is_refused(void **state) {
   scene_free(scene);
 }
 
+/* The estimate of the longest stable step, which is there before a body: no body of 20 is less stable than it by more
+ * than a tenth, nor all more stable by more than a third. */
+static void the_estimated_step_is_that_of_the_least_stable_body(void **state) {
+  (void)state;
+  const char *const disorder[] = {"grain.disorder=0", "grain.disorder=0.5", "grain.disorder=1"};
+  for (int i = 0; i < 3; i++) {
+    struct dem_inputs inputs = DEM_CASE("disc-explosion", disorder[i], "body.diameter=12 cm");
+    double least = HUGE_VAL;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+      struct dem_run *run;
+      struct error error = {0};
+      assert_int_equal(dem_run_create(&inputs, seed, &run, &error), STATUS_OK);
+      least = fmin(least, run->stable_time_step / dem_describe_stable_step(&inputs));
+      dem_run_free(run);
+    }
+    assert_true(least > 0.9 && least < 1.33);
+  }
+}
+
 /* The longest step of a run is that of its system, which test_dem_motion knows; the search for it ends within 1e-7 of
  * its square. It is accepted, and anything longer is refused. */
 static void the_longest_step_is_the_systems(void **state) {
@@ -545,6 +564,7 @@ int main(void) {
                                      cmocka_unit_test(ring_starts_as_described),
                                      cmocka_unit_test(rings_collide),
                                      cmocka_unit_test(what_cannot_run_is_refused),
+                                     cmocka_unit_test(the_estimated_step_is_that_of_the_least_stable_body),
                                      cmocka_unit_test(the_longest_step_is_the_systems),
                                      cmocka_unit_test(chunks_do_not_matter),
                                      cmocka_unit_test(stop_rules),

@@ -75,14 +75,17 @@ static void numbers_and_units(void **state) {
 static void masses_become_numbers(void **state) {
   (void)state;
   struct observed *m = good(SHOT "fragments: {total: 100 g, complete: 1 g, masses: [5 g, 60 g, 1.25 g, 20 g, 10 g, 2.5 "
-                                 "g]}\n");
+                                 "g], resolution: 10 %}\n");
   assert_int_equal(m->datum_count, 5);
-  assert_true(fabs(m->data[0].value - 0.6) < 1e-12);
+  assert_true(fabs(m->data[0].value - 0.6) < 1e-12 && fabs(m->data[0].resolution - 0.06) < 1e-12);
   const double counts[4] = {3, 4, 5, 6}; /* above 9.46, 4.47, 2.11 and 1 g */
   for (size_t k = 0; k < 4; k++) {
     assert_true(fabs(m->data[k + 1].share - 0.2 * pow(0.05, (double)(k + 1) / 4)) < 1e-9);
-    assert_true(m->data[k + 1].value == counts[k]);
+    assert_true(m->data[k + 1].value == counts[k] && fabs(m->data[k + 1].resolution - 0.1 * counts[k]) < 1e-12);
   }
+  observed_free(m);
+  m = good(SHOT "fragments: {total: 10 g, complete: 1 g, masses: [8 g, 2 g]}\n");
+  assert_true(isnan(m->data[0].resolution) && isnan(m->data[1].resolution));
   observed_free(m);
 }
 

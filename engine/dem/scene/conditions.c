@@ -22,7 +22,7 @@ static double step_before(const void *inputs) {
 
 static void step_estimated(const void *inputs, FILE *out) {
   (void)inputs;
-  fputs(", estimated from the stiffness of the beams: each body has its own limit", out);
+  fputs(", estimated for the least stable of 40 bodies: each body has its own limit", out);
 }
 
 static double step_after(const struct condition_run *r) {
