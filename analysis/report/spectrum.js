@@ -59,7 +59,7 @@ function fitOf(curve) {
   const power = 1 - fit.mean;
   const integral = Math.abs(power) < 1e-9 ? Math.log(upper / fit.lower) : (upper ** power - fit.lower ** power) / power;
   const factor = fit.n / curve.points[0].n / integral;
-  return {text: `β = ${withError(fit.mean, fit.hw95)}${goodnessOf(curve.from, fit.point_id)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
+  return {text: `β = ${withError(fit.mean, fit.hw95)} from ${number(fit.lower, 2)} ${curve.from.facts.mass_unit ?? 'kg'} on${goodnessOf(curve.from, fit.point_id)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
 }
 
 function bandOf(curve) {

@@ -50,12 +50,14 @@ void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size);
 /* Options of both commands: the input on the horizontal axis, and the quantity. */
 #define QUANTITY_AXIS_OPTION(type_, member_)                                                                           \
   OPTION_ROW_TEXT("x", 'x', "AXIS", type_, member_, NULL,                                                              \
-                  .doc = "Varied input on the horizontal axis: a path or its unique ending.")
+                  .doc = "Varied input on the horizontal axis: a path or its unique ending. Without it the command "   \
+                         "takes the first varied inputs.")
 #define QUANTITY_OPTION(type_, member_)                                                                                \
   OPTION_ROW_TEXT(                                                                                                     \
-      "quantity", 'Q', "NAME", type_, member_, OUTCOME_DEFAULT,                                                        \
+      "quantity", 'Q', "NAME", type_, member_, NULL,                                                                   \
       .doc = "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "         \
-             "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2).")
+             "point: beta, or beta_METHOD_WINDOW (beta_masses_from_2). Default: the main quantity of the newest "      \
+             "campaign.")
 
 /* Prints a line on stderr for each condition that the runs behind these quantities (ask_doubts_results()) break. */
 status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,

@@ -46,6 +46,7 @@ struct quantity {
   size_t axes;                     /* 1 to AXES */
   char column[AXES][256];          /* the axes' columns in the views */
   char name[256];                  /* column of the quantity, or the exponent's name */
+  char main[ASK_GROUP_NAME];       /* the quantity that a user who names none sees */
   char pooled[ASK_GROUP_POOLED];   /* other varied inputs that the means average over, with points as units; "": none */
   char untold[400];                /* why some exponents are not told: their values are NaN */
   char changing[ASK_GROUP_POOLED]; /* varied inputs that are not drawn and change from point to point; "": none */
@@ -155,6 +156,33 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
   return answer_end(&points);
 }
 
+/* The first `most` varied inputs, where the user named none: inputs[0] is NULL. At least `least` of them, of which a
+ * chart needs numbers. Tells the choice on stderr. */
+static status choose_axes(struct store *store, size_t least, size_t most, const char *inputs[AXES],
+                          struct ask_column axes[LIMITS_AXES_OF_TABLE], struct error *error) {
+  static const char *const option[] = {"--x", "--y"}, *const by = "--by";
+  char chosen[600] = "";
+  size_t count = 0;
+  if (inputs[0] && (least < 2 || inputs[1]))
+    return STATUS_OK;
+  TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, axes, &count, error));
+  if (inputs[0] || inputs[1] || inputs[2])
+    return status_fail(error, STATUS_USAGE,
+                       least < 2 ? "--by also needs --x, an input that the campaign varied"
+                                 : "a map needs both --x and --y, inputs that the campaign varied");
+  if (count < least)
+    return status_fail(error, STATUS_USAGE,
+                       count ? "only %s was varied: `clast plot` draws a quantity over one input"
+                             : "no input was varied: `clast scatter` shows the runs, `clast spectrum` their fragments",
+                       axes[0].word);
+  for (size_t i = 0; i < count && i < most; i++) {
+    inputs[i] = axes[i].word;
+    text_append(chosen, sizeof chosen, " %s %s", i < least ? option[i] : by, axes[i].word);
+  }
+  fprintf(stderr, "clast: drawn over the first inputs that were varied:%s\n", chosen);
+  return STATUS_OK;
+}
+
 /* Reads the quantity `name` over some inputs, the last ones NULL. STATUS_USAGE: unknown names; `refusal` if they are
  * not different inputs and one quantity. The caller releases it, also after an error. */
 static status read_quantity(struct store *store, const char *const inputs[AXES], const char *name, bool newest,
@@ -164,6 +192,7 @@ static status read_quantity(struct store *store, const char *const inputs[AXES],
   char by[900] = "";
   for (size_t i = 0; i < AXES && inputs[i]; i++, quantity->axes++)
     text_append(by, sizeof by, "%s%s", i ? "," : "", inputs[i]);
+  TRY(ask_quantity_main(store, quantity->main, &name, error));
   snprintf(quantity->name, sizeof quantity->name, "%s", name);
   TRY(estimates_named(name, &quantity->exponent, &method, &window, error));
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, quantity->written, &quantity->written_count, error));
@@ -407,7 +436,10 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
 status quantity_plot(struct store *store, const char *x, const char *by, const char *name,
                      const struct picture_page *page, struct error *error) {
   __attribute__((cleanup(release_plot))) struct plot plot = {0};
-  TRY(read_quantity(store, (const char *const[AXES]){x, by}, name, false,
+  struct ask_column axes[LIMITS_AXES_OF_TABLE];
+  const char *inputs[AXES] = {x, by};
+  TRY(choose_axes(store, 1, 2, inputs, axes, error));
+  TRY(read_quantity(store, inputs, name, false,
                     "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another "
                     "one), and one quantity",
                     &plot.quantity, error));
@@ -526,11 +558,14 @@ status quantity_map(struct store *store, const char *x, const char *y, const cha
                     const struct picture_page *page, struct error *error) {
   __attribute__((cleanup(release))) struct quantity quantity = {0};
   OWNED struct picture_tile *tile = NULL;
-  TRY(read_quantity(store, (const char *const[AXES]){x, y, by}, name, true,
+  struct ask_column axes[LIMITS_AXES_OF_TABLE];
+  const char *inputs[AXES] = {x, y, by};
+  TRY(choose_axes(store, 2, AXES, inputs, axes, error));
+  TRY(read_quantity(store, inputs, name, true,
                     "a map needs two different inputs (--x, --y), at most a third one (--by) and one quantity",
                     &quantity, error));
   TRY(memory_array(&tile, quantity.count, sizeof *tile, "the map", error));
   TRY(make_tiles(store, &quantity, tile, page, error));
-  quantity_tell_resolution(store, name, quantity.pooled);
+  quantity_tell_resolution(store, quantity.name, quantity.pooled);
   return STATUS_OK;
 }

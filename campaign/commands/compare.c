@@ -11,7 +11,8 @@ struct options {
 static bool print(struct table *table, bool people, const struct ask_pairs_row *row, struct ask_doubts *sum) {
   char inputs[2 * ASK_POOL_LABEL + 8];
   const bool same = strcmp(row->label[0], row->label[1]) == 0;
-  snprintf(inputs, sizeof inputs, "%s%s%s", row->label[0], same ? "" : "; b: ", same ? "" : row->label[1]);
+  snprintf(inputs, sizeof inputs, "%s%s%s%s", same ? "" : "a: ", row->label[0],
+           same ? "" : "; b: ", same ? "" : row->label[1]);
   struct ask_doubts both = *row->doubts[0];
   ask_doubts_add(&both, row->doubts[1]);
   ask_doubts_add(sum, &both);
@@ -57,7 +58,7 @@ static status run(const struct command_line *line, struct error *error) {
     fprintf(stderr,
             "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
-            options->quantity);
+            ask_pairs_quantity(pairs));
     if (equal)
       fputs("clast: no interval where all runs, or all differences, are equal to 14 digits: other seeds may differ\n",
             stderr);
@@ -66,7 +67,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, NULL),
 };
 
 COMMAND(compare, "results", "A B", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows), .has_table = true,

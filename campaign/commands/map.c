@@ -6,13 +6,6 @@ struct options {
   struct chart_options chart;
 };
 
-static status check(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  if (!options->x || !options->y)
-    return status_fail(error, STATUS_USAGE, "a map needs --x and --y, two inputs that the campaign varied");
-  return STATUS_OK;
-}
-
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct picture_page page = charts_page(line->arguments[1], &options->chart);
@@ -27,5 +20,4 @@ static const struct option_row rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-COMMAND(map, "results", "STORE PICTURE.png", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows),
-        .check = check, .ask = ask);
+COMMAND(map, "results", "STORE PICTURE.png", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows), .ask = ask);

@@ -6,13 +6,6 @@ struct options {
   struct chart_options chart;
 };
 
-static status check(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  if (!options->x)
-    return status_fail(error, STATUS_USAGE, "a plot needs --x, an input that the campaign varied");
-  return STATUS_OK;
-}
-
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const struct picture_page page = charts_page(line->arguments[1], &options->chart);
@@ -26,5 +19,4 @@ static const struct option_row rows[] = {
     CHART_OPTIONS(struct options, chart),
 };
 
-COMMAND(plot, "results", "STORE PICTURE.png", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows),
-        .check = check, .ask = ask);
+COMMAND(plot, "results", "STORE PICTURE.png", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows), .ask = ask);

@@ -33,18 +33,10 @@ struct making {
   size_t picture_bytes, not_drawn;
 };
 
-/* The column of the main quantity of the newest campaign that a person wrote; else M_1/M. */
-static status main_quantity(struct store *store, char column[ASK_GROUP_NAME], struct error *error) {
-  char name[ASK_GROUP_NAME], word[FIELD_TEXT_SIZE];
-  TRY(ask_campaign_quantity(store, word, error));
-  const bool has = *word && ask_group_quantity(store, word, name, NULL) == STATUS_OK;
-  snprintf(column, ASK_GROUP_NAME, "%s", has ? name : OUTCOME_DEFAULT);
-  return STATUS_OK;
-}
-
 static status add_facts(struct making *making, const char *name, struct error *error) {
-  char now[32], refresh[32], quantity[ASK_GROUP_NAME];
-  TRY(main_quantity(making->store, quantity, error));
+  char now[32], refresh[32], name_of_main[ASK_GROUP_NAME];
+  const char *quantity = NULL;
+  TRY(ask_quantity_main(making->store, name_of_main, &quantity, error));
   const time_t seconds = time(NULL);
   strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
   snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);

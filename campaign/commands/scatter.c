@@ -27,7 +27,9 @@ static status read_half_width(const char *text, struct scatter_choice *choice, s
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   struct scatter_choice choice = {{.by = options->by}, options->quantity, NAN, false};
+  char name[ASK_GROUP_NAME];
   TRY(read_half_width(options->half_width, &choice, error));
+  TRY(ask_quantity_main(store, name, &choice.quantity, error));
   if (options->split)
     return print_variance(store, &choice, line->format, error);
   TRY(options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
@@ -40,7 +42,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
 
 static const struct option_row option_rows[] = {
     COMMANDS_BY(struct options, by),
-    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, NULL),
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL),
     OPTION_ROW_FLAG("split", 0, struct options, split),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),

@@ -31,8 +31,10 @@ static status write_design(const struct command_line *line, struct error *error)
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const struct scatter_choice choice = {.quantity = options->quantity};
-  return line->count > 1 ? print_sensitivity(store, line->arguments[1], options->quantity, line->format, error)
+  char name[ASK_GROUP_NAME];
+  struct scatter_choice choice = {.quantity = options->quantity};
+  TRY(ask_quantity_main(store, name, &choice.quantity, error));
+  return line->count > 1 ? print_sensitivity(store, line->arguments[1], choice.quantity, line->format, error)
                          : print_sensitivity_points(store, &choice, line->format, error);
 }
 
@@ -45,7 +47,7 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("design", 0, "KIND", struct options, design, NULL),
     OPTION_ROW_INTEGER("blocks", 0, "N", struct options, blocks, 2, 1 << 20, "64"),
     OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1"),
-    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, NULL),
 };
 
 COMMAND(sensitivity, "results", "STORE|CAMPAIGN.yaml [NEW.yaml]", .chooses_runs = true,

@@ -10,7 +10,7 @@ struct options {
 static status check(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   char name[ASK_GROUP_NAME];
-  for (const char *names = options->quantity; *names;) {
+  for (const char *names = options->quantity ? options->quantity : ""; *names;) {
     enum exponent_method method;
     enum estimates_window window;
     bool is;
@@ -42,7 +42,10 @@ static status warn_of_twins(struct store *store, struct error *error) {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const char *quantity = strcmp(options->quantity, "main") == 0 ? NULL : options->quantity;
+  char name[ASK_GROUP_NAME];
+  const char *asked = options->quantity;
+  TRY(ask_quantity_main(store, name, &asked, error));
+  const char *quantity = strcmp(asked, "main") == 0 ? NULL : asked;
   char pooled[ASK_GROUP_POOLED] = "", changing[ASK_GROUP_POOLED] = "";
   TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
   if (*pooled)
@@ -57,16 +60,16 @@ static status ask(struct store *store, const struct command_line *line, struct e
             "interval is too narrow: `clast estimates` tells each point\n",
             levels);
   if (table_for_people(line->format)) {
-    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, options->quantity, error));
+    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, asked, error));
     TRY(quantity_tell_idle(store, error));
-    quantity_tell_resolutions(store, options->quantity, pooled);
+    quantity_tell_resolutions(store, asked, pooled);
   }
   return warn_of_twins(store, error);
 }
 
 static const struct option_row rows_of_options[] = {
     OPTION_ROW_TEXT("by", 'b', "AXES", struct options, by, ""),
-    OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, quantity, OUTCOME_DEFAULT),
+    OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, quantity, NULL),
 };
 
 COMMAND(stats, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, rows_of_options),

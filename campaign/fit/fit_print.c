@@ -289,10 +289,13 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
     input++;
   if (tell_line(fit, input, out)) /* a steep line is nearly this input alone */
     return;
-  words_print(out, "", "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest%s", names,
-              given,
-              fit->found.kept[input] < AS_WIDE ? ", and yet they exclude a part of its range (share of prior)."
-                                               : ": its interval is that of the prior.");
+  if (fit->found.kept[input] >= AS_WIDE) /* whatever they tell near one place */
+    words_print(out, "", "NOT DETERMINED: %s. Its interval is that of its prior.", names);
+  else
+    words_print(out, "",
+                "NOT DETERMINED: %s. The data give %.0f %% of what is known of it, its prior the rest, and yet they "
+                "exclude a part of its range (share of prior).",
+                names, given);
 }
 
 /* What the data determine of several inputs together, though not of each. */

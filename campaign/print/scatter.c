@@ -103,8 +103,8 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   if (table_for_people(format) && isfinite(choice->half_width))
     words_print(stderr, "",
                 "clast: runs needed: for this half width in a table, and until seeds.until ends, if the scatter stays "
-                "as it is. The "
-                "rule looks in steps of %d runs from %d on, takes the interval of Student and must not end by chance",
+                "as it is. The rule looks in steps of %d runs from %d on. It takes Student's interval, made wider so "
+                "that values which are alike by chance do not end it: 5 to 15 %% more runs",
                 SAMPLE_BATCH, SAMPLE_FIRST);
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "

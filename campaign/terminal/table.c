@@ -65,6 +65,7 @@ static const struct {
     {"last_ended", RARE},
     {"command", RARE},
     {"_mean", MEAN},
+    {"difference", MEAN},
     {"_sd", RARE},
     {"_se", RARE},
     {"_low95", RARE},

@@ -94,13 +94,18 @@ struct answer ask_campaign_sessions(struct store *store, struct error *error) {
       " (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) FROM session ORDER BY session_id");
 }
 
-status ask_campaign_quantity(struct store *store, char quantity[FIELD_TEXT_SIZE], struct error *error) {
+status ask_quantity_main(struct store *store, char name[ASK_GROUP_NAME], const char **quantity, struct error *error) {
+  if (*quantity)
+    return STATUS_OK;
   ANSWER found = answer_to(store, error,
-                           "SELECT plan ->> '$.quantity' FROM campaign WHERE json_valid(plan) AND NOT %s ORDER BY "
+                           "SELECT plan ->> '$.quantity' FROM campaign WHERE json_valid(plan) ORDER BY %s, "
                            "campaign_id DESC LIMIT 1",
                            CAMPAIGN_IS_ROUND);
-  const bool has = answer_next(&found) && answer_value(&found, 0).kind == QUERY_TEXT;
-  snprintf(quantity, FIELD_TEXT_SIZE, "%s", has ? answer_text(&found, 0) : "");
+  const bool has = answer_next(&found) && answer_value(&found, 0).kind == QUERY_TEXT &&
+                   ask_group_quantity(store, answer_text(&found, 0), name, NULL) == STATUS_OK;
+  if (!has)
+    snprintf(name, ASK_GROUP_NAME, "%s", OUTCOME_DEFAULT);
+  *quantity = name;
   return answer_end(&found);
 }
 

@@ -65,8 +65,6 @@ status ask_campaign_attempts(struct store *store, int64_t *attempts, struct erro
 /* One row per session (invocation that wrote to the store): session, campaign (number; may be NULL), started, ended
  * (may be NULL), outcome (may be NULL), version, commit, command (words with spaces between them). */
 struct answer ask_campaign_sessions(struct store *store, struct error *error);
-/* The main quantity of the newest campaign that a person wrote. "": not known, as in a store of an older program. */
-status ask_campaign_quantity(struct store *store, char quantity[FIELD_TEXT_SIZE], struct error *error);
 /* One row per campaign: campaign, name, document. */
 struct answer ask_campaign_documents(struct store *store, struct error *error);
 
@@ -389,6 +387,9 @@ status ask_group_changing(struct store *store, const char *by, char changing[ASK
 /* The full name of one result column of the view runs from a unique ending of it. STATUS_USAGE names the known ones. */
 enum { ASK_GROUP_NAME = 128 };
 status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error);
+/* What a command shows where the user named nothing (*quantity NULL): the main quantity of the newest campaign, one
+ * that a person wrote if there is any, if runs have it, else OUTCOME_DEFAULT. `name` holds it. Else *quantity stays. */
+status ask_quantity_main(struct store *store, char name[ASK_GROUP_NAME], const char **quantity, struct error *error);
 
 /* The columns of comma-separated varied inputs (paths or unique endings), at most `most`. "" names no input. */
 status ask_group_columns(struct store *store, const char *by, size_t most, char (*columns)[ASK_GROUP_NAME],
@@ -426,8 +427,10 @@ struct ask_pairs_row {
 /* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. Of an exponent ("beta", estimates_named()) they
  * are the contributions of the runs: pooled_exponent_of_runs(). STATUS_USAGE: unknown name; STATUS_MISSING: no
  * such store. */
+/* quantity NULL: the main quantity of the first store (ask_quantity_main()). Else borrowed until ask_pairs_free(). */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
                       struct ask_pairs **out, struct error *error);
+const char *ask_pairs_quantity(const struct ask_pairs *pairs);
 /* The next pair, in the order of the points of A; its texts are borrowed from `pairs`. False at the end. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
 /* The runs of a side (0, 1) that a person excluded, its ask_choice_left_out(), and the path of its store, borrowed. */

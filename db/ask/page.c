@@ -27,8 +27,8 @@ enum {
   SPECTRUM = 12000,     /* rows of the table spectra */
   QUANTILES = 200,      /* points with quantiles */
   JUDGED_RUNS = 100000, /* runs of a point in the test for two modes: the first ones */
-  JUDGED = 20000,       /* fragments of points whose fit is tested: some 5 s of CPU time */
-  DRAWS = 1000,         /* samples per test; they give p within 0.016 */
+  JUDGED = 8000,        /* fragments of points whose fit is tested: some 5 s of CPU time */
+  DRAWS = 2500,         /* samples per test, as `clast exponents` draws by default; they give p within 0.01 */
   ATTEMPTS = 500,       /* failed attempts, and failed runs */
 };
 

@@ -29,6 +29,8 @@ struct side {
   size_t group_count, group_room, value_count, value_room;
 };
 struct ask_pairs {
+  const char *quantity;
+  char main[ASK_GROUP_NAME]; /* holds it where the caller named none */
   struct side side[2];
   size_t at, found; /* the next group of side 0; pairs so far */
 };
@@ -122,7 +124,7 @@ static status read_values(struct store *store, const char *quantity, struct side
 }
 
 /* STORE:POINT and STORE:CAMPAIGN choose more narrowly than `choice`. */
-static status read_side(const char *operand, const char *quantity, struct ask_choice choice, struct side *side,
+static status read_side(struct ask_pairs *pairs, const char *operand, struct ask_choice choice, struct side *side,
                         struct error *error) {
   const char *colon = strrchr(operand, ':');
   snprintf(side->path, sizeof side->path, "%s", operand);
@@ -139,19 +141,25 @@ static status read_side(const char *operand, const char *quantity, struct ask_ch
   STORE store = NULL;
   TRY(store_open_reader(side->path, &store, error));
   TRY(ask_choose(store, &choice, error));
-  TRY(read_values(store, quantity, side, error));
+  TRY(ask_quantity_main(store, pairs->main, &pairs->quantity, error));
+  TRY(read_values(store, pairs->quantity, side, error));
   if (side->group_count > 0)
     return STATUS_OK;
   return status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld", operand,
-                     quantity);
+                     pairs->quantity);
+}
+
+const char *ask_pairs_quantity(const struct ask_pairs *pairs) {
+  return pairs->quantity;
 }
 
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
                       struct ask_pairs **out, struct error *error) {
   ASK_PAIRS pairs = memory_small(1, sizeof *pairs);
   *out = NULL;
-  TRY(read_side(first, quantity, *choice, &pairs->side[0], error));
-  TRY(read_side(second, quantity, *choice, &pairs->side[1], error));
+  pairs->quantity = quantity;
+  TRY(read_side(pairs, first, *choice, &pairs->side[0], error));
+  TRY(read_side(pairs, second, *choice, &pairs->side[1], error));
   if (pairs->side[0].one_point != pairs->side[1].one_point)
     return status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
   qsort(pairs->side[0].groups, pairs->side[0].group_count, sizeof *pairs->side[0].groups, by_point);

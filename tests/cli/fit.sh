@@ -108,7 +108,7 @@ same "$(number two.db "select count(*) from axis where path = 'charge.energy'")"
 # The studies that it offers are whole commands, and tell what it lacks; of numbers above a mass there is none.
 sed 's/, resolution: [0-9.]*//' two.yaml >unstudied.yaml
 expect 0 "$clast" fit unstudied.yaml disc.yaml --rounds 3 --store two.db -j 2
-tr '\n' ' ' <out | grep -qF 'Give `resolution` with the value; no study tells it of fragments above a mass.' || fail "counts have no study"
+tr '\n' ' ' <out | grep -qF 'Give `resolution` with the value, or as a share in `fragments:` (resolution: 10 %); no study tells it of fragments above a mass.' || fail "counts have no study"
 tr '\n' ' ' <out | grep -o '`clast converge [^`]*`' | tr -d '`' >studies
 same "$(wc -l <studies)" 2 "studies offered, one a shot"
 while read -r study; do

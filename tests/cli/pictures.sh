@@ -184,8 +184,23 @@ expect 64 "$clast" plot small.db m.png -x strain -Q beta
 says "--by"
 expect 64 "$clast" plot small.db m.png -x strain --by angle -Q beta_ks_from_2
 says "beta_METHOD_WINDOW"
-expect 64 "$clast" plot small.db m.png
+# Without axes: the first varied inputs, and the quantity of the campaign.
+expect 0 "$clast" plot small.db first.svg
+says "drawn over the first inputs that were varied: --x strain --by angle"
+expect 0 "$clast" map small.db first_map.svg
+says "varied: --x strain --y angle"
+expect 64 "$clast" plot small.db m.png --by angle
 says "--x"
+printf 'name: lone\nscene: disc-explosion\nset: {body.diameter: 5 cm}\nquantity: fragment_count\nseeds: 3\n' >lone.yaml
+expect 0 "$clast" run lone.yaml --quiet
+expect 64 "$clast" plot lone.db m.png
+says "no input was varied"
+expect 0 "$clast" stats lone.db --csv
+prints "fragment_count_mean"
+expect 0 "$clast" scatter lone.db
+says "values of fragment_count"
+expect 0 "$clast" compare lone.db:1 lone.db:1
+says "fragment_count: b minus a"
 expect 64 "$clast" plot small.db m.png -x strain --by strain
 expect 64 "$clast" plot small.db m.png -x strain,angle
 expect 64 "$clast" plot small.db m.png -x strain -Q largest_fraction,dust_fraction
@@ -255,8 +270,9 @@ PY
 expect 0 "$clast" compare small.db small.db:small --csv
 [ "$(grep -c . out)" -eq 5 ] || fail "four points beside themselves are four rows"
 [ "$(cut -d, -f1 out | tr -d '\n')" = point_a1234 ] || fail "the pairs are not in the order of their points"
-expect 0 "$clast" compare small.db:1 small.db:4
+expect 0 env COLUMNS=60 "$clast" compare small.db:1 small.db:4
 prints "b: strain" # what differs, in the campaign's units
+prints "difference" # the answer stays on a narrow screen
 expect 64 "$clast" stats small.db --by threshold # a section with both inputs
 says "it may be threshold.angle, threshold.strain"
 expect 64 "$clast" compare small.db:1 small.db
@@ -338,4 +354,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 117
+done_after 124
