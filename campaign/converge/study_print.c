@@ -27,10 +27,29 @@ status study_print_knobs(enum table_format format, struct error *error) {
 }
 
 /* What the study prints, and the store of its runs. */
+/* Below the tables for people: a sentence for each column that they show. */
+static const struct {
+  const char *column; /* NULL: always shown */
+  const char *text;
+} legend[] = {
+    {NULL, "knob: the setting that is changed. *: the scene's own level; a knob's levels are compared with the seeds "
+           "that all of them have, so that n and mean of * differ between knobs."},
+    {"bias", "ref: what bias is measured against. bias: mean minus that of ref, with the half width of its 95 % "
+             "interval."},
+    {"error",
+     "error: how far finer settings may move the mean, summed over all knobs of group resolution, as in `clast "
+     "estimates` and `clast plan`; other knobs than that of the row are at *. A knob leaves its largest "
+     "distance to the limit by the law of all seeds, which is not this mean minus the limit (none seen: |bias| "
+     "+ half width, which is no bound: >=)."},
+    {"frontier", "best: no level is both cheaper and nearer."},
+};
+enum { LEGEND = sizeof legend / sizeof legend[0] };
+
 struct printing {
   enum table_format format;
   const struct study *study;
   struct store *store;
+  bool hidden[LEGEND]; /* columns that the last table left out */
 };
 
 /* Of the runs at the points `in` (ids, comma-separated) with the seeds of the study. */
@@ -111,17 +130,17 @@ static void print_level(struct table *table, const struct study_ladder *ladder, 
   table_text(table, setting);
   table_integer(table, row->n);
   table_rests_on(table, doubts);
-  table_reals(table, 6,
-              (const double[]){row->mean, row->half_width, row->deviation, row->skew, row->upper_mode, row->cpu});
+  table_reals(table, 2, (const double[]){row->mean, row->half_width});
   table_rests_on(table, doubts);
   table_reals(table, 2, (const double[]){rounding ? 0 : row->bias, rounding ? 0 : row->bias_half_width});
-  table_reals(table, 3, (const double[]){row->correlation, row->correlation_low, row->correlation_high});
-  table_real(table, row->break_even);
   if (isfinite(row->error))
     table_text(table, study_show_error(row->error, row->at_least, text));
   else
     table_missing(table);
+  table_real(table, row->cpu);
   table_text(table, row->frontier ? "yes" : "");
+  table_reals(table, 4, (const double[]){row->deviation, row->skew, row->upper_mode, row->correlation});
+  table_reals(table, 3, (const double[]){row->correlation_low, row->correlation_high, row->break_even});
 }
 
 /* ---- sentences ---- */
@@ -288,7 +307,7 @@ static void print_gain(size_t count, const struct study_found *found, FILE *out)
             best->knob, best->setting, best->gain, most);
 }
 
-static status print_quantity(const struct printing *printing, size_t from, size_t quantity, size_t count,
+static status print_quantity(struct printing *printing, size_t from, size_t quantity, size_t count,
                              const struct study_found *found, struct error *error) {
   const struct study *study = printing->study;
   const struct study_quantity *what = &study->quantity[quantity];
@@ -306,19 +325,14 @@ static status print_quantity(const struct printing *printing, size_t from, size_
   text_wrap_lines(sentences, WIDTH, stdout);
   printf("%s, quantity %s%s%s%s\n", base->name, what->name, named ? " (" : "", named ? unit : "", named ? ")" : "");
   TABLE table = table_new(printing->format, stdout);
-  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skewness", NULL});
-  table_rare(table);
-  table_column(table, "share of upper mode", NULL);
-  table_rare(table);
-  table_columns(table, (const char *const[]){"cpu_s", "bias", "bias_hw95", "correlation", NULL});
-  table_rare(table);
-  table_column(table, "correlation low", NULL);
-  table_rare(table);
-  table_column(table, "correlation high", NULL);
-  table_rare(table);
-  table_column(table, "pays from correlation", NULL);
-  table_rare(table);
-  table_columns(table, (const char *const[]){"error", "frontier", NULL});
+  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "bias", "bias_hw95", "error",
+                                             "cpu_s", "frontier", "sd", NULL});
+  static const char *const rare[] = {"skewness",        "share of upper mode", "correlation",
+                                     "correlation low", "correlation high",    "pays from correlation"};
+  for (size_t c = 0; c < sizeof rare / sizeof rare[0]; c++) {
+    table_column(table, rare[c], NULL);
+    table_rare(table);
+  }
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
@@ -326,6 +340,8 @@ static status print_quantity(const struct printing *printing, size_t from, size_
       print_level(table, &study->ladder[from + i], &found[i].rows[l], &doubts);
     }
   TRY(table_end(table, error));
+  for (size_t k = 0; k < LEGEND; k++)
+    printing->hidden[k] = legend[k].column && table_hides(table, legend[k].column);
   free(sentences);
   sentences = NULL;
   out = text_open(&sentences);
@@ -370,14 +386,6 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
   return STATUS_OK;
 }
 
-static const char legend[] =
-    "knob: the setting that is changed. *: the scene's own level; a knob's levels are compared with the seeds that all "
-    "of them have, so that n and mean of * differ between knobs. ref: what bias is measured against. bias: mean minus "
-    "that of ref, with the half width of its 95 % interval. error: how far finer settings may move the mean, summed "
-    "over all knobs of group resolution, as in `clast estimates` and `clast plan`; other knobs than that of the row "
-    "are at *. A knob leaves its largest distance to the limit by the law of all seeds, which is not this mean minus "
-    "the limit (none seen: |bias| + half width, which is no bound: >=). best for its cost: no level is both cheaper "
-    "and nearer.";
 static const char legend_of_all[] =
     "correlation: of the runs of a seed with those at the next finer level; from \"pays from correlation\" on, the "
     "coarse level as a control variate would save time. share of upper mode: of the runs, where their values have two "
@@ -385,6 +393,7 @@ static const char legend_of_all[] =
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   OWNED struct study_found *found = NULL;
+  char words[2000] = "";
   TRY(memory_array(&found, LIMITS_STUDY_KNOBS, sizeof *found, "the rows of a study", error));
   STORE store = NULL;
   TRY(store_open_reader(study->limits.store, &store, error));
@@ -412,7 +421,10 @@ status study_print(const struct study *study, enum table_format format, bool qui
   uncertainty_doubts(&sum, stderr);
   if (quiet)
     return STATUS_OK;
-  words_print(stderr, "", "%s", legend);
+  for (size_t k = 0; k < LEGEND; k++)
+    if (!printing.hidden[k])
+      text_append(words, sizeof words, "%s%s", *words ? " " : "", legend[k].text);
+  words_print(stderr, "", "%s", words);
   if (format == TABLE_ALL)
     words_print(stderr, "", "%s", legend_of_all);
   bool main = false;

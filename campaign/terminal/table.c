@@ -37,10 +37,13 @@ enum role {
 };
 
 /* Headings for people. */
-static const char *const headings[][2] = {{"surplus", "after the rule's stop"}, {"censored", "ended at end_time"},
-                                          {"kept", "share of prior"},           {"not_told", "why not told"},
-                                          {"of_means", "share of means"},       {"of_runs", "share of runs"},
-                                          {"frontier", "best for its cost"}};
+static const char *const headings[][2] = {{"surplus", "after the rule's stop"},
+                                          {"censored", "ended at end_time"},
+                                          {"kept", "share of prior"},
+                                          {"not_told", "why not told"},
+                                          {"of_means", "share of means"},
+                                          {"of_runs", "share of runs"},
+                                          {"frontier", "best"}};
 
 /* What people need of columns with such a name, or with such an ending. */
 static const struct {
@@ -786,6 +789,13 @@ status table_end(struct table *table, struct error *error) {
   if (table->out_of_memory)
     return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
   return verdict(table->out, table->write_error, error);
+}
+
+bool table_hides(const struct table *table, const char *name) {
+  for (size_t c = 0; c < table->column_count; c++)
+    if (strcmp(table->columns[c].name, name) == 0)
+      return table->columns[c].left_out;
+  return true;
 }
 
 void table_drop(struct table **variable) {

@@ -67,6 +67,9 @@ void table_doubt_cells(struct table *table, const struct ask_doubts *doubts);
  * head`) is not an error. */
 status table_end(struct table *table, struct error *error);
 
+/* After table_end: did people not see this column? */
+bool table_hides(const struct table *table, const char *name);
+
 /* True when the pipe is closed or writing has failed: more rows are not needed. */
 bool table_broken(const struct table *table);
 

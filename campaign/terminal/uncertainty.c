@@ -10,6 +10,8 @@
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 static const double SMALL = 1e-3;       /* below it a common power of ten is shorter than zeros */
+static const double LARGE = 1e6;        /* from it on, too, where the error leaves only zeros in the last THOUSANDS */
+enum { THOUSANDS = 3 };
 
 /* Decade of the last digit that an error allows: one digit of the error, two after a leading 1. Rounding moves it by at
  * most a quarter. */
@@ -24,11 +26,11 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
     return;
   }
   const double size = fmax(fabs(value), half_width);
-  if (size < SMALL) { /* (3.3 +- 0.2)e-05 */
+  if (size < SMALL || (size >= LARGE && last_decade(half_width) >= THOUSANDS)) { /* (3.3 +- 0.2)e-05 */
     const double decade = floor(log10(size));
     char digits[UNCERTAINTY_TEXT];
     uncertainty_number(value / pow(10, decade), half_width / pow(10, decade), digits);
-    snprintf(text, UNCERTAINTY_TEXT, "(%.40s)e%03d", digits, (int)decade);
+    snprintf(text, UNCERTAINTY_TEXT, "(%.40s)e%+03d", digits, (int)decade);
     return;
   }
   double leading = last_decade(half_width);
@@ -39,7 +41,7 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
     return;
   }
   const int decimals = leading < 0 ? (int)-leading : 0;
-  const double step = leading > 0 ? pow(10, leading) : 0; /* 58 500 000 +- 1 900 000 */
+  const double step = leading > 0 ? pow(10, leading) : 0; /* 58 500 +- 1900 */
   snprintf(text, UNCERTAINTY_TEXT, "%.*f \xc2\xb1 %.*f", decimals, step > 0 ? step * round(value / step) : value,
            decimals, step > 0 ? step * round(half_width / step) : half_width);
 }

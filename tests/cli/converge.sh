@@ -394,6 +394,9 @@ sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
 says "More seeds are not likely to help: the resolution alone makes a difference of about 0.0"
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
+says "best: no level is both cheaper and nearer" # the legend tells the columns that are shown
+expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
+! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
 
 expect 64 "$clast" converge
@@ -406,4 +409,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 101
+done_after 102
