@@ -415,19 +415,21 @@ static status list_inputs(const struct scene *scene, enum table_format format, s
   return table_end(table, error);
 }
 
-/* "basalt-sphere@draft: particles 10000, precision float" */
+/* "basalt-sphere@draft: fidelity.particles 10000, fidelity.precision float" */
 static void list_settings(const struct scene *scene) {
   for (size_t i = 0; i < scene->settings_count; i++) {
     const struct scene_settings *settings = &scene->settings[i];
-    printf("  %s@%s:", scene->name, settings->name);
+    OWNED char *line = NULL;
+    FILE *out = text_open(&line);
+    fprintf(out, "  %s@%s:", scene->name, settings->name);
     for (size_t j = 0; j < settings->count; j++) {
       const struct field *row = &scene->kind->inputs->rows[settings->item[j].row];
-      printf("%s %s ", j ? "," : "", row->path);
-      field_json_value(row, &settings->item[j].value, stdout);
-      if (row->unit && strcmp(row->unit, "1") != 0)
-        printf(" %s", row->unit);
+      char value[FIELD_TEXT_SIZE];
+      field_show(row, &settings->item[j].value, value, sizeof value);
+      fprintf(out, "%s %s %s", j ? "," : "", row->path, value);
     }
-    putchar('\n');
+    text_close_small(out, &line);
+    text_wrap_lines(line, WIDTH, stdout);
   }
 }
 

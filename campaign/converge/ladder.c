@@ -147,14 +147,30 @@ static void add_named(struct making *making, const char *name) {
   making->ladder->level[making->ladder->count++] = level;
 }
 
+/* The knob of the group `model` that settings turn, or NULL. Such settings, for example the choices of another code,
+ * are another model: what they change is no error of the scene's resolution. */
+static const struct knob *model_of(const struct scene *scene, const struct scene_settings *settings) {
+  for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++)
+    for (size_t i = 0; knob->group == KNOB_MODEL && i < KNOB_INPUTS && knob->inputs[i].path; i++)
+      for (size_t j = 0; j < settings->count; j++)
+        if (strcmp(scene->kind->inputs->rows[settings->item[j].row].path, knob->inputs[i].path) == 0)
+          return knob;
+  return NULL;
+}
+
 static status add_all_named(struct making *making, const char *settings, struct error *error) {
   const struct scene *base = making->base;
   struct ladder *ladder = making->ladder;
   if (is_wanted(settings, SCENE_SETTINGS_STANDARD))
     add_named(making, SCENE_SETTINGS_STANDARD);
-  for (size_t i = 0; i < base->settings_count; i++)
-    if (is_wanted(settings, base->settings[i].name))
-      add_named(making, base->settings[i].name);
+  for (size_t i = 0; i < base->settings_count; i++) {
+    const char *name = base->settings[i].name;
+    const struct knob *model = settings ? NULL : model_of(base, &base->settings[i]);
+    if (model)
+      fprintf(making->notes, "settings %s are left out: another model (%s)\n", name, model->name);
+    else if (is_wanted(settings, name))
+      add_named(making, name);
+  }
   if (ladder->count < 2)
     return status_fail(error, STATUS_CONTENT, "%s has fewer than two named settings (`settings` in its document)",
                        base->name);

@@ -20,7 +20,8 @@ struct ladder {
 };
 
 /* The levels of a knob in a scene. For the group `settings`: the scene as written and its named settings, sorted by
- * their work; the reference is the one named `reference`, or the last. settings: NULL, or a comma-separated list of
+ * their work; the reference is the one named `reference`, or the last. Named settings that turn a knob of the group
+ * `model` are levels only if the list names them. settings: NULL, or a comma-separated list of
  * values of the knob's first input, which replaces the ladder; the scene's own setting is then a level only if
  * it is among them. Levels that the scene refuses are left out and named in *notes (malloc'd lines, may become
  * NULL). STATUS_CONTENT: the knob does not apply to this scene, or fewer than two levels are left; *ladder is empty
