@@ -111,6 +111,27 @@ printf 'name: named\nscene: ./named.yaml@draft\nset: {body.diameter: 8 cm}\nseed
 expect 0 "$clast" run draft.yaml --store named.db
 says "1 found in the store"
 
+# The choices of other codes: each sets what its column of the page says, and nothing else. Other scenes do not have them.
+python - "$clast" "$source/tests/validation/sph_other_codes.md" <<'PY' || fail "the page and the settings differ"
+import json, re, subprocess, sys
+def inputs(scene):
+    rows = json.loads(subprocess.check_output([sys.argv[1], 'explain', scene, '--json']))
+    return {r['path']: str(r['value']) if isinstance(r['value'], str) else r['value'] for r in rows}
+def cell(text):
+    number = re.fullmatch(r'([0-9.]+)( GPa|)', text)
+    return float(number[1] + ('e9' if number[2] else '')) if number else {'true': True, 'false': False, 'off': None}.get(text, text)
+table = [[c.strip() for c in line.split('|')[1:-1]] for line in open(sys.argv[2]) if re.match(r'\| `\w+\.', line)]
+own = inputs('basalt-sphere')
+for k, code in enumerate(('opensph', 'miluphcuda', 'spheral')):
+    said = {row[0].strip('`'): cell(row[2 + k]) for row in table if row[2 + k]}
+    theirs = inputs('basalt-sphere@' + code)
+    changed = {path: value for path, value in theirs.items() if own.get(path) != value}
+    assert len(said) > 8 and changed == said, (code, changed, said)
+PY
+ok "settings as the page says"
+expect 66 "$clast" explain disruption@opensph
+says "it has standard, draft, reference"
+
 # A campaign: every point is studied.
 tiny tiny
 expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j 2
@@ -409,4 +430,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 102
+done_after 104

@@ -217,6 +217,29 @@ static void named_settings_are_levels(void **state) {
   scene_free(scene);
 }
 
+/* The choices of other codes are another model, and no error of the resolution: levels only if the user names them. */
+static void settings_of_another_model_are_no_levels(void **state) {
+  (void)state;
+  struct scene *scene = scene_of("basalt-sphere");
+  const struct knob *knob = knob_of("sph", "settings");
+  struct ladder ladder;
+  char *notes = NULL;
+  assert_int_equal(ladder_make(knob, scene, NULL, &ladder, &notes, &error), STATUS_OK);
+  assert_int_equal(ladder.count, 3);
+  for (size_t l = 0; l < 3; l++)
+    assert_string_equal(ladder.level[l].setting, ((const char *[]){"draft", "standard", "reference"})[l]);
+  assert_non_null(strstr(notes, "settings opensph are left out: another model"));
+  assert_non_null(strstr(notes, "settings miluphcuda are left out"));
+  assert_non_null(strstr(notes, "settings spheral are left out"));
+  ladder_clear(&ladder);
+  free(notes);
+  assert_int_equal(ladder_make(knob, scene, "opensph,standard", &ladder, &notes, &error), STATUS_OK);
+  assert_int_equal(ladder.count, 2);
+  ladder_clear(&ladder);
+  free(notes);
+  scene_free(scene);
+}
+
 static double number(struct store *store, const char *sql) {
   double number = NAN;
   assert_int_equal(answer_number(store, &number, &error, "%s", sql), STATUS_OK);
@@ -389,6 +412,7 @@ int main(void) {
                                      cmocka_unit_test(blocks_keep_their_sides),
                                      cmocka_unit_test(levels_of_ones_own),
                                      cmocka_unit_test(named_settings_are_levels),
+                                     cmocka_unit_test(settings_of_another_model_are_no_levels),
                                      cmocka_unit_test(findings_replace_earlier_ones),
                                      cmocka_unit_test(a_point_has_the_errors_of_its_knobs),
                                      cmocka_unit_test(a_level_has_the_errors_of_the_other_knobs)};
