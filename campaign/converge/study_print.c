@@ -9,6 +9,7 @@
 #include "campaign/charts/charts.h"
 #include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
+#include "db/store/views.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -325,8 +326,9 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   text_wrap_lines(sentences, WIDTH, stdout);
   printf("%s, quantity %s%s%s%s\n", base->name, what->name, named ? " (" : "", named ? unit : "", named ? ")" : "");
   TABLE table = table_new(printing->format, stdout);
-  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "bias", "bias_hw95", "error",
-                                             "cpu_s", "frontier", "sd", NULL});
+  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", NULL});
+  table_range(table, views_range(what->name));
+  table_columns(table, (const char *const[]){"bias", "bias_hw95", "error", "cpu_s", "frontier", "sd", NULL});
   static const char *const rare[] = {"skewness",        "share of upper mode", "correlation",
                                      "correlation low", "correlation high",    "pays from correlation"};
   for (size_t c = 0; c < sizeof rare / sizeof rare[0]; c++) {

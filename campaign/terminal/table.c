@@ -231,6 +231,11 @@ void table_key(struct table *table, const struct ask_column *input) {
   column->factor = input->factor;
 }
 
+void table_range(struct table *table, struct sample_range range) {
+  if (!table->broken)
+    table->columns[table->column_count - 1].range = range;
+}
+
 void table_rare(struct table *table) {
   if (!table->broken && table->people)
     table->columns[table->column_count - 1].role = RARE;

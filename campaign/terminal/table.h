@@ -43,6 +43,8 @@ void table_column(struct table *table, const char *name, const char *unit);
 void table_columns(struct table *table, const char *const *names);
 /* A varied input: people see its short name, its unit, and numbers in that unit. */
 void table_key(struct table *table, const struct ask_column *input);
+/* The last column is the half width of a mean of values in this range. */
+void table_range(struct table *table, struct sample_range range);
 /* People see the last column only with --all. */
 void table_rare(struct table *table);
 

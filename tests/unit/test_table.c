@@ -66,6 +66,28 @@ static void test_text(void **state) {
 }
 
 /* A table for people cannot control the terminal: neither its cells nor its names and units. */
+/* The half width stands in the cell of its value, which leaves its range for nobody; a rare column is hidden. */
+static void test_half_widths(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  TABLE table = table_new(TABLE_BARE, out);
+  table_columns(table, (const char *const[]){"share", "hw95", NULL});
+  table_range(table, (struct sample_range){.least = 0, .most = 1});
+  table_columns(table, (const char *const[]){"any", "hw95", "rare", NULL});
+  table_rare(table);
+  for (int i = 0; i < 2; i++)
+    table_reals(table, 5, (const double[]){0.8, i ? 0.1 : 0.4, 0.8, 0.4, 7});
+  assert_int_equal(table_end(table, NULL), STATUS_OK);
+  fclose(out);
+  assert_string_equal(text, "         share        any\n"
+                            "0.8 (0.4 to 1)  0.8 ± 0.4\n"
+                            "   0.80 ± 0.10  0.8 ± 0.4\n");
+  assert_true(table_hides(table, "rare") && !table_hides(table, "any"));
+  free(text);
+}
+
 static void test_text_is_harmless(void **state) {
   (void)state;
   static const char *const hostile[] = {"a\x1b[2J\x07", "b\x08\x7f", "\xc2\x9b\x9b\xc3\xa9", "\r\n\t"};
@@ -199,6 +221,7 @@ int main(void) {
       cmocka_unit_test(test_csv),
       cmocka_unit_test(test_json),
       cmocka_unit_test(test_text),
+      cmocka_unit_test(test_half_widths),
       cmocka_unit_test(test_text_is_harmless),
       cmocka_unit_test(test_csv_is_harmless),
       cmocka_unit_test(test_numbers_round_trip),
