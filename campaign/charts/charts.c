@@ -76,7 +76,6 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
 }
 
 void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {
-  char words[UNCERTAINTY_TEXT];
   if (doubts->chosen && *doubts->chosen)
     text_append(text, size, "%sonly %s", *text ? "; " : "", doubts->chosen);
   if (doubts->excluded > 0)
@@ -84,9 +83,22 @@ void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {
                 doubts->excluded == 1 ? "" : "s");
   if (doubts->doubtful == 0)
     return;
-  ask_doubts_words(doubts, words, sizeof words);
-  text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs: %s", *text ? "; " : "", doubts->doubtful,
-              doubts->runs, words);
+  text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs:", *text ? "; " : "", doubts->doubtful,
+              doubts->runs);
+  for (size_t k = 0; k < doubts->count; k++) { /* rows of one word can share runs: the most of one of them */
+    int64_t runs = doubts->word[k].runs;
+    bool told = false;
+    for (size_t i = 0; i < doubts->count; i++)
+      if (strcmp(doubts->word[i].word, doubts->word[k].word) == 0) {
+        told |= i < k;
+        runs = doubts->word[i].runs > runs ? doubts->word[i].runs : runs;
+      }
+    if (told)
+      continue;
+    text_append(text, size, "%s %s", k ? "," : "", doubts->word[k].word);
+    if (runs < doubts->doubtful)
+      text_append(text, size, " %" PRId64, runs);
+  }
 }
 
 /* ---- the stability map of a store ---- */

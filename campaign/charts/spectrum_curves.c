@@ -175,7 +175,7 @@ static void write_caption(struct store *store, const struct curves *curves, char
   snprintf(
       caption, CAPTION,
       "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
-      laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Bars",
+      laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Error bars",
       curves->several ? "points" : "seeds", text);
   char untold[400] = "";
   for (size_t i = 0; i < curves->count; i++)

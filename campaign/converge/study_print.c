@@ -317,6 +317,9 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   if (unit && strcmp(unit, "kg") == 0)
     unit = ask_pool_mass_unit(base->kind->dimensions);
   const bool named = unit && strcmp(unit, "1") != 0;
+  bool ran = false;
+  for (size_t i = 0; i < count; i++)
+    ran |= has_runs(&found[i]);
   if (from || quantity)
     putchar('\n');
   OWNED char *sentences = NULL;
@@ -324,7 +327,14 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   print_sentence(study, from, quantity, count, found, out);
   text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
-  printf("%s, quantity %s%s%s%s\n", base->name, what->name, named ? " (" : "", named ? unit : "", named ? ")" : "");
+  char point[512];
+  design_axis_show_point(study->varied_count, study->varied, base->inputs, point, sizeof point);
+  if (!ran)
+    words_print(stdout, "", "%s%s%s: nothing was run in the time given", base->name, *point ? ", " : "", point);
+  if (!ran)
+    return STATUS_OK;
+  words_print(stdout, "", "%s%s%s, quantity %s%s%s%s", base->name, *point ? ", " : "", point, what->name,
+              named ? " (" : "", named ? unit : "", named ? ")" : "");
   TABLE table = table_new(printing->format, stdout);
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", NULL});
   table_range(table, views_range(what->name));
@@ -376,6 +386,9 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
       TRY(read_doubts(printing, &printing->study->ladder[from + i], l, quantity, &doubts, error));
+      const struct study *study = printing->study;
+      for (size_t a = 0; a < study->varied_count; a++)
+        print_value(table, study->varied[a].row, study->ladder[from].base->inputs);
       for (size_t c = 0; c < convergence_table.count; c++)
         print_value(table, &convergence_table.rows[c], &found[i].rows[l]);
       for (size_t c = OF_LIMIT; c < convergence_limit_table.count; c++)
@@ -401,6 +414,11 @@ status study_print(const struct study *study, enum table_format format, bool qui
   TRY(store_open_reader(study->limits.store, &store, error));
   struct printing printing = {.format = format, .study = study, .store = store};
   TABLE table = table_for_people(format) ? NULL : table_new(format, stdout);
+  for (size_t a = 0; table && a < study->varied_count; a++) {
+    char name[FIELD_TEXT_SIZE];
+    field_column_name(study->varied[a].row->path, name, sizeof name);
+    table_column(table, name, study->varied[a].row->unit);
+  }
   for (size_t c = 0; table && c < convergence_table.count; c++)
     table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);
   for (size_t c = OF_LIMIT; table && c < convergence_limit_table.count; c++)

@@ -168,6 +168,20 @@ const char *design_axis_show(const struct design_axis *axis, const struct field_
   return text;
 }
 
+const char *design_axis_show_point(size_t count, const struct design_axis *axes, const void *inputs, char *text,
+                                   size_t size) {
+  *text = '\0';
+  for (size_t i = 0; i < count; i++) {
+    struct field_value value;
+    char shown[VALUE_SIZE];
+    const char *word = strrchr(axes[i].row->path, '.');
+    field_get(axes[i].row, inputs, &value);
+    text_append(text, size, "%s%s %s", i ? ", " : "", word ? word + 1 : axes[i].row->path,
+                design_axis_show(&axes[i], &value, shown, sizeof shown));
+  }
+  return text;
+}
+
 static const char *value_text(const struct design_axis *axis, const struct field_value *value, char text[VALUE_SIZE]) {
   return design_axis_show(axis, value, text, VALUE_SIZE);
 }

@@ -49,6 +49,10 @@ void design_axis_follow(const struct design_axis *axis, const struct field_value
                         struct field_value *value);
 /* A value in the campaign's unit ("1e+28 cm^-3"), else as field_show() has it. Returns `text`. */
 const char *design_axis_show(const struct design_axis *axis, const struct field_value *value, char *text, size_t size);
+/* A point as people read it: "strain 3 %, energy 100 J/m", by the last words of the paths. inputs: of its scene. "": no
+ * axes. */
+const char *design_axis_show_point(size_t count, const struct design_axis *axes, const void *inputs, char *text,
+                                   size_t size);
 /* axes[index] for people, every number with its unit: "1 %, 3 %", "uniform from 1 GPa to 2 GPa". */
 void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out);
 /* Level of a LEVELS axis at quantile u. */

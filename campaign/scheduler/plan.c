@@ -400,6 +400,8 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK) {
     plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs, options->all) : NULL;
+    design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, plan->costliest,
+                           sizeof plan->costliest);
     add_up(campaign, options, &looking, fragments, plan);
   }
   for (size_t i = 0; i < looking.sampled; i++)
@@ -500,6 +502,8 @@ static void print(const struct campaign *campaign, const struct plan *plan, int 
 
   if (plan->model) {
     fputc('\n', out);
+    if (*plan->costliest)
+      words_print(out, "", "the most expensive point, %s:", plan->costliest);
     text_wrap_lines(plan->model, 100, out);
   }
 }

@@ -234,6 +234,7 @@ struct plan {
   uint64_t runs_least, runs_most;    /* differ with `until` */
   uint64_t runs_there;               /* of the sampled points, already in the store */
   const char *store;                 /* path; borrowed from the campaign or the options */
+  char costliest[512];               /* the point of `model`, as people read it; "": there is one point */
   bool store_exists;
   bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
   bool trial_whole;     /* times are of whole runs, measured or estimated from a coarse run; else upper bounds */

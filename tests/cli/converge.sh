@@ -416,6 +416,12 @@ expect 65 "$clast" plan tight.yaml --store finer.db
 says "More seeds are not likely to help: the resolution alone makes a difference of about 0.0"
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 says "best: no level is both cheaper and nearer" # the legend tells the columns that are shown
+# A study of several points names each of them, for people and for programs.
+printf 'name: each\nscene: disc-explosion\nset: {body.diameter: 6 cm, stop.end_time: 0.2 ms}\nvary: {threshold.strain: [1 %%, 3 %%]}\nstore: each.db\n' >each.yaml
+expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
+prints "disc-explosion, strain 3 %, quantity largest_fraction"
+expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --csv
+same "$(cut -d, -f1 out | sort -u | tr '\n' ' ')" "0.01 0.03 threshold_strain " "inputs of the levels"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 ! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
