@@ -216,6 +216,7 @@ static void compare_runs(const struct measured *m, size_t first, const struct po
     far += (m->single ? distance_of_sample(&run, pool, true) : distance_at(m, first, &run, pool)) >= out->distance;
   }
   out->simulated = sample_summarise_moments(&moments, 0.95);
+  out->judged = judged;
   if (judged >= MATCH_RUNS && isfinite(out->distance))
     out->share = (double)far / (double)judged;
 }
@@ -227,7 +228,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   complete = fmax(fmax(complete, measured->complete), 0); /* fmax ignores a NaN */
   while (first < measured->n && measured->mass[first] < complete)
     first++;
-  *out = (struct measured_match){complete, 0, sample_summarise(0, NULL, 0.95), NAN, NAN, NAN};
+  *out = (struct measured_match){complete, 0, sample_summarise(0, NULL, 0.95), NAN, NAN, NAN, 0};
   if (first == measured->n || !(measured->above[first] > 0))
     return STATUS_OK;
   if (!measured->single || !(complete > 0))

@@ -542,6 +542,7 @@ struct measured_match {
   double log_likelihood; /* of the measured fragments in classes of mass (the store's bins, or the thresholds), if each
                             is drawn from the pool; half a fragment is added to each class. Compare it between pools
                             with the same `complete`. NaN for a sieve table */
+  size_t judged;         /* runs with two or more fragments from `from` on, which `share` is of */
 };
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
                         struct measured_match *out, struct error *error);

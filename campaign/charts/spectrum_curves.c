@@ -131,7 +131,7 @@ static void print_rivals(const struct pooled_rivals *rivals, const char *kg) {
     return;
   printf("  exponential cut-off: ");
   if (isfinite(rivals->cutoff_mass))
-    printf("F(m) ~ m^-%.2f exp(-m/m_c), m_c %.3g %s, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
+    printf("F(m) ~ m^%.2f exp(-m/m_c), m_c %.3g %s, 2 dlnL %.1f, p %.2g\n", -rivals->cutoff_beta, rivals->cutoff_mass,
            kg, rivals->cutoff_ratio, rivals->cutoff_p);
   else
     printf("none seen below the largest fragments; with them p %.2g (small p: needed)\n", rivals->open_cutoff_p);

@@ -40,7 +40,9 @@ enum { LOOKED_AT = 1000, LINE = 500 };
 
 struct doubts {
   size_t points, count[CONDITION_MOST];
-  char first[CONDITION_MOST][LINE]; /* the engine's text for the first point with this warning */
+  double number[CONDITION_MOST];    /* of the worst point with this warning */
+  bool differ[CONDITION_MOST];      /* this number differs between the points */
+  char worst[CONDITION_MOST][LINE]; /* the engine's text for it */
 };
 
 /* The engine writes its lines in the order of the bits. */
@@ -54,8 +56,14 @@ static void add(struct doubts *doubts, const struct scene *scene) {
     if (!(set >> k & 1))
       continue;
     const size_t length = strcspn(line, "\n");
-    if (doubts->count[k]++ == 0)
-      snprintf(doubts->first[k], sizeof doubts->first[k], "%.*s", (int)length, line);
+    const struct condition *condition = &scene->kind->conditions[k];
+    const double number = condition->before(scene->inputs), before = doubts->number[k];
+    const bool other = doubts->count[k]++ > 0 && !condition->fact && number != before;
+    doubts->differ[k] |= other;
+    if (doubts->count[k] == 1 || (other && (condition->least ? number < before : number > before))) {
+      doubts->number[k] = number;
+      snprintf(doubts->worst[k], sizeof doubts->worst[k], "%.*s", (int)length, line);
+    }
     line += length + (line[length] != 0);
   }
 }
@@ -89,8 +97,9 @@ static void print(const struct doubts *doubts, const char *before, bool counted,
       continue;
     char text[LINE + 64] = "";
     if (counted)
-      text_append(text, sizeof text, "%zu of %zu points: ", doubts->count[k], doubts->points);
-    text_append(text, sizeof text, "%s", doubts->first[k]);
+      text_append(text, sizeof text, "%zu of %zu points%s: ", doubts->count[k], doubts->points,
+                  doubts->differ[k] ? ", at worst" : "");
+    text_append(text, sizeof text, "%s", doubts->worst[k]);
     print_line(text, before, out);
   }
 }

@@ -338,12 +338,14 @@ status find_print_picture(const struct find *find, const char *path, const struc
     level[i] = (struct picture_mean){(i ? find->to : find->from) / one_of_unit, at, at, at, NAN, false};
     interval[i] = (struct picture_mean){i ? high : low, at, least, most, NAN, false};
   }
+  const struct picture_mean crossing = {value_at(find, found->at) / one_of_unit, at, NAN, NAN, NAN, false};
   const struct picture_curve curves[] = {
       {.label = is_share ? "share of runs above" : "mean of neighbouring runs, 95 % interval",
        .count = count,
        .mean = means},
       {.label = "level", .count = 2, .mean = level, .band = true},
       {.label = "band: 95 % interval of the crossing", .count = 2, .mean = interval, .band = true},
+      {.label = "crossing", .count = 1, .mean = &crossing, .scattered = true},
   };
   const bool one = found->kind == CROSSING_FOUND || found->kind == CROSSING_PLATEAU;
   field_column_name(find->input->path, column, sizeof column);
@@ -358,5 +360,5 @@ status find_print_picture(const struct find *find, const char *path, const struc
   charts_doubts(&find->doubts, caption, sizeof caption);
   const struct picture_page page = charts_page(path, chart);
   const struct picture_words words = {title, caption, x, y};
-  return picture_curves(&page, &words, one ? 3 : 2, curves, error);
+  return picture_curves(&page, &words, found->kind == CROSSING_FOUND ? 4 : one ? 3 : 2, curves, error);
 }

@@ -57,6 +57,7 @@ static void print_rows(struct table *table, const struct ask_pools *pools, const
 
 static status take(struct store *store, const struct ask_pool_choice *choice, struct table *table,
                    struct curves *curves, struct error *error) {
+  static const struct sample_range positive = {.least = 0, .most = HUGE_VAL};
   OWNED struct ask_ejecta *ejecta = memory_small(1, sizeof *ejecta);
   ASK_POOLS pools = ask_ejecta_pools(store, choice, error);
   TRY(pools.code);
@@ -66,8 +67,10 @@ static status take(struct store *store, const struct ask_pool_choice *choice, st
     table_column(table, "runs", NULL);
     table_column(table, "mass", "kg");
     table_column(table, "mass_hw95", "kg");
+    table_range(table, positive);
     table_column(table, "momentum", "kg m/s");
     table_column(table, "momentum_hw95", "kg m/s");
+    table_range(table, positive);
     table_doubt_columns(table);
   }
   for (const struct ask_pool *pool; (!table || !table_broken(table)) && (pool = ask_pools_next(&pools));) {
@@ -122,7 +125,7 @@ status print_ejecta(struct store *store, const struct ask_pool_choice *choice, c
   if (table && table_for_people(format))
     fputs(
         "clast: mass and momentum (along the outward normal) of the target's matter that leaves at a speed or faster; "
-        "hw95: 95 % intervals over runs, of pooled points over points\n",
+        "±: 95 % intervals over runs, of pooled points over points\n",
         stderr);
   if (curves->without)
     fprintf(stderr, "clast: %zu runs are left out: an older clast stored no speeds of their ejecta\n", curves->without);

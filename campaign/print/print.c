@@ -310,6 +310,7 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   table_columns(table, (const char *const[]){"runs", "fragments", NULL});
   table_column(table, choice->cumulative ? "number" : "number_density", per_unit);
   table_column(table, choice->cumulative ? "number_hw95" : "number_density_hw95", per_unit);
+  table_range(table, (struct sample_range){.least = 0, .most = HUGE_VAL});
   table_column(table, "mass_share", NULL);
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
@@ -339,14 +340,24 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
 static const double FAR = 0.05; /* the measured spectrum differs from a pool when fewer runs are as far */
 
 /* The answer in words: of one pool with its share of runs, of more with their numbers. */
-static void tell_shape(size_t pools, size_t agree, size_t differ, double share, bool nothing) {
+static void tell_shape(size_t pools, size_t agree, size_t differ, double share, bool nothing, const size_t judged[2]) {
   if (agree + differ == 0 && nothing)
     puts("no verdict on the shape: no distance can be told, see below");
   else if (agree + differ == 0)
-    printf("no verdict on the shape: it needs %d runs of two fragments or more\n", MATCH_RUNS);
+    words_print(stdout, "",
+                judged[0] == judged[1]
+                    ? "no verdict on the shape: it needs %d runs of two fragments or more from there on, and has %zu"
+                    : "no verdict on the shape: it needs %d runs of two fragments or more from there on; the rows have "
+                      "%zu to %zu",
+                MATCH_RUNS, judged[0], judged[1]);
   else if (pools > 1)
-    printf("agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu, no verdict on %zu\n",
-           agree, pools, FAR, differ, pools - agree - differ);
+    words_print(
+        stdout, "",
+        pools == agree + differ
+            ? "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu"
+            : "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu, no verdict on "
+              "%zu, of which one has %zu runs of two fragments or more (%d are needed)",
+        agree, pools, FAR, differ, pools - agree - differ, judged[0], MATCH_RUNS);
   else
     words_print(
         stdout, "",
@@ -361,8 +372,9 @@ static const double SAME_MASS = 1.5; /* bodies whose masses differ by a smaller 
 status print_spectrum_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error) {
   const struct measured *measured = choice->measured;
-  double complete = measured->complete; /* kg; likelihoods are compared above one mass */
-  double heaviest = 0, whole = 0, given = 0;
+  double complete = measured->complete;                    /* kg; likelihoods are compared above one mass */
+  double heaviest = 0, body[2] = {HUGE_VAL, 0}, given = 0; /* kg; lightest and heaviest body of a row */
+  size_t judged[2] = {SIZE_MAX, 0};                        /* runs with a shape: fewest and most */
   int dimensions;
   TRY(ask_pool_dimensions(store, &dimensions, error));
   const char *kg = ask_pool_mass_unit(dimensions);
@@ -398,7 +410,10 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
       heaviest = fmax(heaviest, runs->masses[i]);
       mass += runs->masses[i] / (double)runs->count;
     }
-    whole = fmax(whole, mass);
+    body[0] = fmin(body[0], mass);
+    body[1] = fmax(body[1], mass);
+    judged[0] = match.judged < judged[0] ? match.judged : judged[0];
+    judged[1] = match.judged > judged[1] ? match.judged : judged[1];
     print_pool_cells(table, &pools, pool);
     table_reals(table, 2, (const double[]){match.from, match.fragments});
     table_integer(table, (int64_t)pool->data.runs.count);
@@ -415,7 +430,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   }
   TRY(ask_pools_end(&pools));
   if (table_for_people(format))
-    tell_shape(count, agree, differ, share, nothing);
+    tell_shape(count, agree, differ, share, nothing, judged);
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
@@ -442,12 +457,15 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
           "clast: this scene is two-dimensional: its masses are per metre of thickness, the measured ones in kg count "
           "as of 1 m. Divide them by the thickness of the specimen, and name the column mass (kg/m)\n",
           stderr);
-    else if (given > 0 && fmax(given / whole, whole / given) > SAME_MASS)
+    else if (given > 0 && fmax(given / body[0], body[1] / given) > SAME_MASS) {
+      char other[48] = "";
+      if (body[1] > 1.001 * body[0])
+        snprintf(other, sizeof other, " to %.3g", body[1]);
       fprintf(stderr,
-              "clast: the measured fragments have %.3g %s or more together, a run has %.3g %s. Masses are compared as "
-              "they are: give the body of the scene the size of the specimen\n",
-              given, kg, whole, kg);
-    else if (nothing)
+              "clast: the measured fragments have %.3g %s or more together, a run has %.3g%s %s. Masses are compared "
+              "as they are: give the body of the scene the size of the specimen\n",
+              given, kg, body[0], other, kg);
+    } else if (nothing)
       fputs("clast: more particles or grains lower the mass from which a spectrum is complete\n", stderr);
   }
   return STATUS_OK;

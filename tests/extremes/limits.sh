@@ -34,6 +34,10 @@ expect 0 "$clast" plan doubt.yaml --no-trial
 prints "warning   1 of 2 points: step: fidelity.time_step over the longest stable step is"
 expect 0 "$clast" run doubt.yaml -j 2
 says "warning: 1 of 2 points: step:"
+said=$(sed -n 's/.*longest stable step is \([0-9.]*\), .*/\1/p' <(tr '\n' ' ' <err | tr -s ' '))
+sed 's/1 us, 5 us/1 us, 5 us, 4 us/; s/doubt/worst/' doubt.yaml >worst.yaml
+expect 0 "$clast" plan worst.yaml --no-trial
+tr '\n' ' ' <out | tr -s ' ' | grep -qF "2 of 3 points, at worst: step: fidelity.time_step over the longest stable step is $said," || fail "not the worst of two points: $said"
 same "$(number doubt.db "select group_concat((time_step * 1e6) || ':' || replace(warnings, ', ', '+'), ' ') from (select distinct time_step, warnings from run order by 1, 2)")" "1.0: 5.0:drift+step 5.0:step" "words in the store"
 expect 0 "$clast" extremes doubt.db --json
 prints '"warned": 3'
@@ -78,4 +82,4 @@ expect 1 "$clast" run failures.yaml -j 2
 says "20"
 [ "$(number failures.db "select count(*) from run")" -lt 60 ] || fail "it did not stop"
 ok "stopped after $(number failures.db "select count(*) from run") runs of 200"
-done_after 33
+done_after 34

@@ -761,8 +761,10 @@ const struct condition sph_conditions[] = {
         .doubt = "the shock of the impact is not resolved, and all that follows from it moves with the particles",
         .reason =
             "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
-        .remedy = "take more particles; or, of a scene that is not graded, set fidelity: {graded: true, "
-                  "spacings_per_radius: 5, projectile_spacing: 1}; if it takes more particles, a message says how many",
+        .remedy =
+            "take more particles; or, of a scene that is not graded, set fidelity: {graded: true, "
+            "spacings_per_radius: 5, projectile_spacing: 1}, and where the scene has a fidelity.fine_spacing, make "
+            "that a fifth of the radius; if it takes more particles, a message says how many",
         .results = ALL_OF_AN_IMPACT, .before = spacings, .beside = sph_derived_tell_unkept),
     CONDITION("wall", .number = "the number of particle spacings through the wall of colliding rings or cylinders",
               .bound = 4, .least = true,
