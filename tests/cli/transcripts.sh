@@ -21,6 +21,20 @@ db.execute("PRAGMA user_version = 3")
 db.commit()
 PY
 chmod +x bin/freeze
+# page FILE: the tables that a page of `clast report` holds, without the words of other engines; run_id is not the same everywhere.
+cat >bin/page <<'PY'
+#!/usr/bin/python3
+import base64, gzip, re, sqlite3, sys
+for packed in re.findall(r'class="store">\s*([A-Za-z0-9+/=]+)', open(sys.argv[1]).read()):
+    db = sqlite3.connect(":memory:")
+    db.deserialize(gzip.decompress(base64.b64decode(packed)))
+    for table, in db.execute("SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT IN ('session', 'column_doc', 'question')").fetchall():
+        print("==", table)
+        for row in db.execute(f'SELECT * FROM "{table}"'):
+            if row[0] not in ("dem", "sph", "program"):
+                print(*("-" if value is None else value for value in row[table == "runs":]), sep="|")
+PY
+chmod +x bin/page
 
 printf 'engine: toy\nstick: {trouble: true}\n' >stick.yaml
 # grid: 2 x 2 points and 12 seeds, of which one is censored. few: a rule stops it. ask: a design of Saltelli.
@@ -68,6 +82,18 @@ shots:
   - name: b
     fragments: {total: 302 g, complete: 0.5 g, masses: [250 g, 12 g, 7 g, 3 g, 2 g, 1 g, 0.7 g]}
 YAML
+# One number of two inputs is a ridge; two numbers determine both; angle changes nothing.
+for fit in 'ridge 1 %, 20 %' 'both 1 %, 9 %' 'wide 2 %, 3 %'; do
+  read -r name range <<<"$fit"
+  printf '%s\n' "name: $name" 'scene: stick.yaml' 'vary:' "  stick.strain: {uniform: [$range]}" '  stick.coarse: {uniform: [1 kg, 20 kg]}' \
+    'design: {kind: latin_hypercube, points: 10}' 'seeds: {per_point: 4}' "store: $name.db" >"$name.yaml"
+done
+sed -i 's/20 kg/200 kg/' ridge.yaml
+sed 's/^name: .*/name: alone/; s/coarse: .*/angle: {uniform: [2 deg, 6 deg]}/; s/^store: .*/store: alone.db/' ridge.yaml >alone.yaml
+printf 'name: %s\nsource: made up\nshots: [{specimens: %s, measured: [{quantity: largest_fraction, value: 0.85, error: %s, resolution: 0}%s]}]\n' \
+  one 1 0.01 '' >one_shot.yaml
+printf 'name: %s\nsource: made up\nshots: [{specimens: %s, measured: [{quantity: largest_fraction, value: 0.85, error: %s, resolution: 0}%s]}]\n' \
+  two 3 0.002 ', {quantity: mean_fragment_mass, value: 5 kg, error: 0.1 kg, resolution: 0}' >two_shot.yaml
 printf '# source: made up\nmass (g), count\n8, 30\n20, 12\n50, 5\n200, 1\n' >measured.csv
 expect 0 python "$source/tests/cli/transcripts.py" "$source/tests/cli/transcripts.txt"
 
