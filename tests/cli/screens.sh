@@ -11,6 +11,8 @@ expect 0 "$clast" spectrum small.db --point 4 --size "2.7 g/cm^3" --plot
 prints "L [m]"; prints "F(L) [1/m]"
 expect 0 "$clast" spectrum small.db --point 4 --plot
 prints "m [kg/m]"; prints "F(m) [m/kg]"
+expect 0 "$clast" query small.db "SELECT run_id, total_mass FROM runs"
+prints "total_mass [kg/m]"
 # Two meanings, two names: fragments per kg and run here, the share of the fragments per kg in the view spectra.
 expect 0 "$clast" spectrum small.db --point 4 --csv
 python - <<'PY' || fail "number_density"
@@ -192,4 +194,4 @@ same "$(number levels.db "select count(*) from convergence where n = 18")" 4 "le
 expect 0 "$clast" explain withheld
 prints '"-" in tables'
 
-done_after 49
+done_after 50

@@ -340,6 +340,15 @@ static void time_limit_stops(void **state) {
                         &rows),
                    STATUS_STOPPED);
   assert_near(number(store, "SELECT count(*) FROM run"), M * K * RUNS, 0); /* and the next query works */
+  /* An answer that is over takes no limit from the next one, also where it is ended twice. */
+  struct answer over = answer_to_user(store, "SELECT 1", 0, NULL, 0.05, &error);
+  OK(answer_end(&over));
+  struct answer next = answer_to_user(store,
+                                      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT 20000000) "
+                                      "SELECT max(i) FROM n",
+                                      0, NULL, 0.05, &error);
+  OK(answer_end(&over));
+  assert_int_equal(keep(next, &rows), STATUS_STOPPED);
   store_close(store, NULL);
 }
 
