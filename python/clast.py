@@ -127,7 +127,8 @@ class Store:
 
     def points(self):
         """A row for each point: varied inputs; n, excluded; _mean, _sd, _se, _hw95, _low95 and
-        _high95 (95 % interval; _hw95 is None when all runs are equal to 14 digits) of the main results."""
+        _high95 (95 % interval; _hw95 is None when all runs are equal to 14 digits) of the main results.
+        runs() has all results; `clast stats STORE -Q NAME --csv` the means of any of them."""
         return self.query("SELECT * FROM points")
 
     def spectra(self, point=None):
