@@ -10,6 +10,7 @@
 
 #include "campaign/document/observed.h"
 #include "campaign/fit/fit.h"
+#include "schemas/text.h"
 
 #define HEAD "name: t\nsource: a test\n"
 #define SHOT HEAD "shots:\n  - "
@@ -154,6 +155,13 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "measured: [{fragments: {total: 10 g, complete: 1 g, masses: [9 g]}}]\n", "a key of the shot");
   observed_free(good(SHOT "fragments: {total: 10 kg/m, complete: 1 kg/m, masses: [9 kg/m]}\n")); /* discs are flat */
   bad(SHOT "fragments: {total: 10 kg/m, complete: 1 kg, masses: [9 kg/m]}\n", "complete");
+  char many[4000] = SHOT "measured:\n", shots[4000] = HEAD "shots:\n"; /* one more than there is room for */
+  for (size_t k = 0; k <= OBSERVED_DATA; k++)
+    text_append(many, sizeof many, "    - {quantity: time, value: %zu ms}\n", k + 1);
+  bad(many, "m.yaml:37|more than 32 numbers in all");
+  for (size_t k = 0; k <= OBSERVED_SHOTS; k++)
+    text_append(shots, sizeof shots, "  - {name: s%zu, measured: [{quantity: time, value: 1 ms}]}\n", k);
+  bad(shots, "more than 32 shots");
 }
 
 /* The documents of the pages fit_*.md. */

@@ -507,6 +507,15 @@ static void pixels_are_pinned(void **state) {
                                     {.body = body, .caption = "right", .frame = &frames[1]}};
   assert_int_equal(picture_fragments(at("grains.png"), 640, "Grains", "four of them", 3, panels, NULL), STATUS_OK);
 
+  const struct picture_frame all = {.view = {-1, -1, 5, 3}};
+  struct picture_sheet *sheet = NULL;
+  assert_int_equal(picture_sheet_open(at("sheet.png"), 3, &all, &sheet, NULL), STATUS_OK);
+  panels[2].caption = "under the last one";
+  for (int k = 0; k < 3; k++)
+    assert_int_equal(picture_fragments_on_sheet(sheet, "Sheet", k == 1 ? "middle" : "side", &panels[k], NULL),
+                     STATUS_OK);
+  assert_int_equal(picture_sheet_close(sheet, STATUS_OK, NULL), STATUS_OK);
+
   enum { N = 24 };
   double position[N][3], size[N], mass[N], value[N];
   int64_t fragment[N], part[N];
@@ -561,7 +570,7 @@ static void pixels_are_pinned(void **state) {
   assert_int_equal(picture_margins(at("margins.png"), 480, "Which runs are safe", 2, margins, NULL), STATUS_OK);
 
   static const char *const names[] = {"grains.png", "cut.png",      "outside.png", "apart.png",
-                                      "damage.png", "pressure.png", "margins.png"};
+                                      "damage.png", "pressure.png", "margins.png", "sheet.png"};
   static const char *const path = CLAST_SOURCE_DIR "/tests/unit/pictures.txt";
   char *now = NULL, *pinned = NULL;
   size_t length = 0;
@@ -630,7 +639,8 @@ int main(int count, char **arguments) {
                            "apart.png",
                            "damage.png",
                            "pressure.png",
-                           "margins.png"};
+                           "margins.png",
+                           "sheet.png"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
       unlink(at(names[i]));
     if (sweep(folder) != 0)
