@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What commands print for programs (CSV, JSON, files) and say on stderr, on stores of the toy engine, whose numbers hang on no
-# machine: transcripts.txt beside this file is run again and compared (transcripts.py). The numbers that the others rest on
-# are computed a second time here, by their formulas.
+# What commands print for programs (CSV, JSON, files) and for people, and say on stderr, on stores of the toy engine, whose
+# numbers hang on no machine: transcripts.txt beside this file is run again and compared (transcripts.py). The numbers that
+# the others rest on are computed a second time here, by their formulas.
 . "$(dirname "$0")/lib.bash"
 ln -s "$toy" bin/clast
 # freeze STORE [WORDS]: times, memory and machine of its runs become numbers that are the same everywhere, and some runs get
