@@ -122,10 +122,13 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
 void convergence_resolve_own(size_t count, struct convergence_row *levels, const struct limit_law *law,
                              const size_t *place, const struct limit_point *own) {
   struct convergence_row *base = NULL;
+  const struct convergence_row *finest = NULL;
   double largest = NOTHING, coarsest = 0; /* of the levels; step of the coarsest one that the law describes */
   for (size_t l = 0; l < count; l++) {
     if (place[l] < LIMIT_LEVELS)
       largest = fmax(largest, levels[l].resolution);
+    if (place[l] < LIMIT_LEVELS && (!finest || levels[l].step < finest->step))
+      finest = &levels[l];
     if (place[l] == law->dropped)
       coarsest = levels[l].step;
     if (levels[l].base && place[l] >= LIMIT_LEVELS)
@@ -134,8 +137,8 @@ void convergence_resolve_own(size_t count, struct convergence_row *levels, const
   if (!base)
     return;
   base->open = !(law->verdict == LIMIT_SEEN && base->step <= coarsest);
-  if (base->open)
-    base->resolution = largest;
+  if (base->open) /* finer than all levels: as the finest one */
+    base->resolution = finest && base->step < finest->step ? finest->resolution : largest;
   else
     resolve(base, &own->distance);
 }

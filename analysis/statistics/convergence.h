@@ -159,7 +159,8 @@ extern const struct field_table convergence_limit_table;
 void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
                          double bound);
 /* The same for the scene's own level when it was left out; else nothing. `own`: the law at its step, of limit_infer().
- * Where no law reaches it, the largest of the levels is its resolution, and open tells that it is no bound. */
+ * Where no law reaches it, its resolution is the largest of the levels, or that of the finest one if it is finer still,
+ * and open tells that it is no bound. */
 void convergence_resolve_own(size_t count, struct convergence_row *levels, const struct limit_law *law,
                              const size_t *place, const struct limit_point *own);
 /* The row of a law. */

@@ -331,6 +331,11 @@ static status read_values(struct fit *f, struct term *seeds, double *of_means, s
   return STATUS_OK;
 }
 
+/* Both shares have the same order. That of the means is free of the share of the seeds, whose interval may be wide. */
+static struct sensitivity_share ranked(const struct sensitivity_point *index) {
+  return isfinite(index->of_means.estimate) ? index->of_means : index->of_runs;
+}
+
 static void rank_indices(size_t inputs, struct sensitivity_point *index) {
   for (size_t i = 0; i < inputs; i++) {
     if (index[i].verdict != SENSITIVITY_TOLD)
@@ -338,8 +343,8 @@ static void rank_indices(size_t inputs, struct sensitivity_point *index) {
     index[i].first_rank = index[i].last_rank = 1;
     for (size_t j = 0; j < inputs; j++) {
       const bool other = j != i && index[j].verdict == SENSITIVITY_TOLD;
-      index[i].first_rank += other && index[j].of_runs.low > index[i].of_runs.high;
-      index[i].last_rank += other && index[j].of_runs.high >= index[i].of_runs.low;
+      index[i].first_rank += other && ranked(&index[j]).low > ranked(&index[i]).high;
+      index[i].last_rank += other && ranked(&index[j]).high >= ranked(&index[i]).low;
     }
   }
 }

@@ -716,7 +716,8 @@ struct sensitivity_point {
   size_t with;
   struct sensitivity_share of_runs;  /* share of the variance of single runs, which has the scatter over seeds */
   struct sensitivity_share of_means; /* of the variance of the means over seeds. NaN: one seed, or too few points */
-  size_t first_rank, last_rank;      /* by of_runs: an input with an interval that overlaps may be before or behind */
+  size_t first_rank, last_rank; /* by of_means, else of_runs: an input with an interval that overlaps may be before or
+                               behind */
 };
 /* index: an array of inputs + 1, the last one for the seeds (NaN with one seed for each point). What is left of the
  * whole is what inputs do together, and with one seed also the scatter over seeds. *needed: the least number of points

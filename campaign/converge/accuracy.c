@@ -524,7 +524,9 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
-  if (*accuracy->left_out)
+  const bool a_guess = best->open && least <= accuracy->within; /* what lies beyond the finest level is not known */
+  const bool by_resolution = !accuracy->open && best->middle * least >= accuracy->within;
+  if (*accuracy->left_out && !by_resolution)
     text_append(next, sizeof next,
                 "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
                 accuracy->left_out, path, quantity);
@@ -537,11 +539,14 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
                 1.3 * least, unit);
   return status_fail(
       error, STATUS_CONTENT,
-      "accuracy: no setting gives %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64 " seeds). The smallest error is "
+      "accuracy: no setting %s %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64 " seeds). The smallest error is "
       "%s%.2g%s%s, with %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
-      quantity, share, accuracy->within, unit, *share ? ")" : "", accuracy->mean, unit, accuracy->n,
-      best->open ? "about " : "", least, unit, best->open ? " (a guess, as no limit is seen)" : "", chosen, next, more,
-      path);
+      a_guess ? "is known to give" : "gives", quantity, share, accuracy->within, unit, *share ? ")" : "",
+      accuracy->mean, unit, accuracy->n, best->open ? "about " : "", least, unit,
+      a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
+      : best->open ? " (a guess, as no limit is seen)"
+                   : "",
+      chosen, next, more, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {

@@ -124,6 +124,11 @@ static void own_level_without_runs(void **state) {
   convergence_resolve_own(4, level, &law, place, &own);
   assert_true(level[1].resolution == 0.3 && level[1].open);
 
+  level[1].step = 0.1; /* finer than all others */
+  convergence_resolve_own(4, level, &law, place, &own);
+  assert_true(level[1].resolution == 0.1 && level[1].open);
+  level[1].step = 0.8;
+
   const size_t all[] = {0, 1, 2, 3}; /* with runs it is a level like the others */
   level[1].resolution = 0.17;
   level[1].open = false;
