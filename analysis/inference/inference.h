@@ -27,6 +27,7 @@ struct seed_scatter_runs {
   const double *x; /* points x inputs, of the order of 1 */
   /* points x replicates; NaN: no run. With shared seeds, column r has the same seed at all points */
   const double *values;
+  bool counts; /* they are whole numbers, or grow with them: few of them are often equal */
 };
 
 struct seed_scatter {
@@ -39,8 +40,8 @@ struct seed_scatter {
 };
 
 /* Fits the variance: a line through ln(s^2) of the points, whose expectation and variance under chi-square are known
- * (digamma, trigamma), with a prior of width 1 on each slope. shared_seeds false: `shared` is 0. STATUS_CONTENT: no
- * point has two or more runs. */
+ * (digamma, trigamma), with a prior of width 1 on each slope; of counts the line of greatest likelihood instead.
+ * shared_seeds false: `shared` is 0. STATUS_CONTENT: no point has two or more runs. */
 status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
                         struct error *error);
 double seed_scatter_variance(const struct seed_scatter *scatter, const double *x);
@@ -135,8 +136,8 @@ size_t posterior_node(const struct posterior *posterior, double p);
 
 /* Quantile over the posterior of output k in one more experiment, measured like the first. */
 double posterior_predicted(const struct posterior_model *model, const struct posterior *posterior, size_t k, double p);
-/* The share of such experiments below the measured value. */
-double posterior_below(const struct posterior_model *model, const struct posterior *posterior, size_t k);
+/* The share of such experiments below a value, in the unit of the data. */
+double posterior_below(const struct posterior_model *model, const struct posterior *posterior, size_t k, double value);
 
 /* ---- what the data determine ----
  *
@@ -176,6 +177,7 @@ struct surfaces_runs {
   const double *z;      /* points x inputs, normal coordinates */
   const double *values; /* outputs x points x replicates */
   bool shared_seeds;    /* replicate r has the same seed at all points */
+  const bool *counts;   /* of each output: is it a count? NULL: none is */
 };
 
 struct surfaces {

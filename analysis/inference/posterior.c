@@ -325,8 +325,8 @@ double posterior_predicted(const struct posterior_model *model, const struct pos
   return (low + high) / 2;
 }
 
-double posterior_below(const struct posterior_model *model, const struct posterior *posterior, size_t k) {
+double posterior_below(const struct posterior_model *model, const struct posterior *posterior, size_t k, double value) {
   double mean[PREDICTED_NODES], deviation[PREDICTED_NODES];
   expect_at_nodes(model, posterior, k, mean, deviation);
-  return share_below(mean, deviation, model->data[k].value);
+  return share_below(mean, deviation, value);
 }

@@ -16,9 +16,12 @@ static struct sample_moments moments_of(const struct seed_scatter_runs *runs, si
   return m;
 }
 
-/* Weighted least squares of ln(s^2) - its bias on 1 and x, with a prior on the slopes. */
+/* One weighted least squares of ln(s^2) - its bias on 1 and x, with a prior on the slopes. Of counts instead a step of
+ * Fisher's scoring towards the greatest likelihood of the s^2, from the line in `out`: few equal counts have an s^2 of
+ * 0, which is no news there, and which the logarithm would take for certain. */
 static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct seed_scatter *out) {
   enum { MOST = INFERENCE_INPUTS + 1 };
+  static const double SHARE = 0.5; /* of a step of the scoring */
   const size_t n = runs->inputs + 1;
   double normal[MOST * MOST] = {0}, right[MOST] = {0}, row[MOST];
   for (size_t i = 0; i < runs->points; i++) {
@@ -28,7 +31,10 @@ static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct
     const double half = (double)(m.n - 1) / 2;
     /* Runs that are equal by chance show that the variance is small, not that it is 0. */
     const double variance = fmax(m.squares / (2 * half), 1e-4 * pooled);
-    const double y = log(variance / pooled) - gsl_sf_psi(half) + log(half), weight = 1 / gsl_sf_psi_1(half);
+    const double found = seed_scatter_variance(out, runs->x + i * runs->inputs);
+    const double y = runs->counts ? log(found / pooled) + m.squares / (2 * half) / found - 1
+                                  : log(variance / pooled) - gsl_sf_psi(half) + log(half);
+    const double weight = runs->counts ? half : 1 / gsl_sf_psi_1(half);
     row[0] = 1;
     memcpy(row + 1, runs->x + i * runs->inputs, runs->inputs * sizeof *row);
     for (size_t a = 0; a < n; a++) {
@@ -42,8 +48,10 @@ static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct
   if (!covariance_factor(n, normal))
     return; /* the pooled variance stays */
   covariance_solve(n, normal, right, right);
-  out->constant += right[0];
-  memcpy(out->slope, right + 1, runs->inputs * sizeof *right);
+  const double share = runs->counts ? SHARE : 1;
+  out->constant += share * (log(pooled) + right[0] - out->constant);
+  for (size_t a = 0; a < runs->inputs; a++)
+    out->slope[a] += share * (right[a + 1] - out->slope[a]);
 }
 
 /* Correlation from sums over points, seed by seed: their variance over seeds shows how strongly a seed moves all points
@@ -89,6 +97,8 @@ static void find_shape(const struct seed_scatter_runs *runs, struct seed_scatter
   out->excess = second > 0 ? fourth / count / (second / count * second / count) - 3 : 0;
 }
 
+enum { PASSES = 40 }; /* of the scoring */
+
 status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
                         struct error *error) {
   *out = (struct seed_scatter){.inputs = runs->inputs};
@@ -106,7 +116,7 @@ status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, 
                        "give more seeds (seeds.per_point), or another quantity");
   pooled /= (double)out->freedom;
   out->constant = pooled > 0 ? log(pooled) : -700; /* no seed changes this output */
-  if (pooled > 0)
+  for (int pass = 0; pooled > 0 && pass < (runs->counts ? PASSES : 1); pass++)
     fit_line(runs, pooled, out);
   if (pooled > 0 && shared_seeds)
     out->shared = shared_correlation(runs, out);

@@ -89,6 +89,7 @@ static void find_data(struct fit *fit) {
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct observed_datum *from = &fit->observed->data[k];
     const double slope = slope_of(from);
+    fit->counts[k] = from->ask.kind == ASK_SPECIMENS_COUNT || (from->ask.row && from->ask.row->kind == FIELD_INTEGER);
     fit->data[k] = (struct posterior_datum){.value = fit_transform(from, from->value),
                                             .error = from->error * slope,
                                             .resolution = isnan(from->resolution) ? 0 : from->resolution * slope,
@@ -161,7 +162,8 @@ struct surfaces_runs fit_runs(const struct fit *fit, double *packed) {
   for (size_t i = 0; i < fit->points; i++)
     for (size_t k = 0; k < d; k++)
       memcpy(packed + (k * fit->points + i) * r, fit->values + (i * d + k) * r, r * sizeof *packed);
-  return (struct surfaces_runs){.points = fit->points,
+  return (struct surfaces_runs){.counts = fit->counts,
+                                .points = fit->points,
                                 .inputs = fit->inputs,
                                 .outputs = d,
                                 .replicates = r,

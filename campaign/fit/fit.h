@@ -36,7 +36,7 @@ struct fit {
   struct fit_rule rule;
 
   size_t inputs, axis[INFERENCE_INPUTS]; /* axis of the campaign of each unknown input */
-  bool bounded[INFERENCE_INPUTS];
+  bool bounded[INFERENCE_INPUTS], counts[OBSERVED_DATA];
   struct ask_doubts doubts[OBSERVED_DATA];         /* of the runs that were read for each datum */
   struct ask_doubts all_doubts;                    /* of the runs of all data, each once */
   struct posterior_datum data[OBSERVED_DATA];      /* a count N is compared as ln(1 + N) */

@@ -18,10 +18,17 @@ static const struct field *row_of(const struct fit *fit, size_t input) {
   return fit->campaign->axes[fit->axis[input]].row;
 }
 
+static double share_below(const struct fit *fit, size_t k, double transformed) {
+  return posterior_below(&fit->surfaces.model, &fit->posterior, k, transformed);
+}
+
 /* Share of predicted experiments beyond this datum, on the side where fewer are. */
 static double beyond(const struct fit *fit, size_t k) {
-  const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
-  return fmin(below, 1 - below);
+  /* Of a count half a fragment on either side belongs to it: the law of the prediction is smooth. */
+  const struct observed_datum *datum = &fit->observed->data[k];
+  const double half = fit->counts[k] ? 0.5 : 0;
+  return fmin(share_below(fit, k, fit_transform(datum, datum->value + half)),
+              1 - share_below(fit, k, fit_transform(datum, datum->value - half)));
 }
 
 /* Does a measured value lie where no inputs within the priors lead? Then the posterior is where the priors end. Of many
@@ -152,7 +159,7 @@ static status print_data(const struct fit *fit, enum table_format format, struct
     for (int q = 0; q < 3; q++)
       quantile[q] = predicted(fit, k, levels[2 * q]);
     quantile_cells(table, quantile, &fit->doubts[k]);
-    table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
+    table_real(table, share_below(fit, k, fit->data[k].value));
   }
   return table_end(table, error);
 }
@@ -184,7 +191,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
       table_real(table, predicted(fit, k, levels[2 * q]));
     skip(table, 1);
     value_cells(fit, k, table);
-    table_real(table, posterior_below(&fit->surfaces.model, &fit->posterior, k));
+    table_real(table, share_below(fit, k, fit->data[k].value));
     table_doubt_cells(table, &fit->doubts[k]);
   }
   return table_end(table, error);
@@ -428,7 +435,7 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
   char label[LABEL];
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
-    const double below = posterior_below(&fit->surfaces.model, &fit->posterior, k);
+    const double below = share_below(fit, k, fit->data[k].value);
     observed_label(fit->observed, k, label, sizeof label);
     if (fit->exact[k])
       words_print(out, "", "NO SCATTER: no seed changes %s, and it has no error: an error of one fragment is assumed.",

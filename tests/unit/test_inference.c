@@ -109,6 +109,31 @@ static void scatter_of_seeds_is_recovered(void **state) {
   assert_true(apart < 0.03);
 }
 
+/* Three counts of a point, 1 or 2, are equal in four of ten points or more. Their variance is p (1 - p). */
+static void equal_counts_are_no_certainty(void **state) {
+  (void)state;
+  static struct sampled s;
+  struct seed_scatter fit;
+  struct error error;
+  double most = 0;
+  enum { THREE = 3, TIMES = 40 };
+  for (uint64_t t = 0; t < TIMES; t++) {
+    for (size_t i = 0; i < POINTS; i++) {
+      s.x[i] = -1.5 + 3 * (double)i / (POINTS - 1);
+      for (size_t r = 0; r < THREE; r++)
+        s.values[i * THREE + r] = 1 + (case_normal(40 + t, i, r) > 0.5 - 0.4 * s.x[i]);
+    }
+    const struct seed_scatter_runs runs =
+        {.points = POINTS, .inputs = 1, .replicates = THREE, .x = s.x, .values = s.values, .counts = true};
+    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    for (int k = -1; k <= 1; k++) {
+      const double x = k, p = 0.5 * erfc((0.5 - 0.4 * x) / sqrt(2)), variance = seed_scatter_variance(&fit, &x);
+      most = fmax(most, fabs(log(variance / (p * (1 - p)))));
+    }
+  }
+  assert_true(most < log(2.5));
+}
+
 static void scatter_knows_two_heaps_and_too_few_runs(void **state) {
   (void)state;
   static struct sampled s;
@@ -532,6 +557,7 @@ int main(void) {
       cmocka_unit_test(correlation_of_two_outputs),
       cmocka_unit_test(errors_of_data_by_hand),
       cmocka_unit_test(points_of_one_run_are_left_out),
+      cmocka_unit_test(equal_counts_are_no_certainty),
       cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
       cmocka_unit_test(kriging_passes_through_a_smooth_function),
       cmocka_unit_test(kriging_knows_what_seeds_leave),

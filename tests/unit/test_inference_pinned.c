@@ -44,7 +44,7 @@ static void fit(const char *name, case_model model, size_t inputs, size_t output
     say("correlation", outputs, &fit.surfaces.correlation[k * outputs]);
     for (double p = 0.05; p < 1; p += 0.45)
       SAY("predicted", p, posterior_predicted(&fit.surfaces.model, &fit.posterior, k, p));
-    SAY("below", posterior_below(&fit.surfaces.model, &fit.posterior, k));
+    SAY("below", posterior_below(&fit.surfaces.model, &fit.posterior, k, fit.surfaces.model.data[k].value));
   }
   double mean[INFERENCE_INPUTS], covariance[INFERENCE_OUTPUTS * INFERENCE_OUTPUTS];
   posterior_moments(&fit.posterior, mean, covariance);
