@@ -28,12 +28,25 @@ static double skewed(const double *u, size_t k, uint64_t seed) {
                                   0.3 * fabs(case_normal(seed, place, k + 2)));
 }
 
+/* The same largest fragment, and the logarithm of one plus a number of fragments: of six, each with a chance that grows
+ * with the load. Three such numbers are often equal. */
+static double few(const double *u, size_t k, uint64_t seed) {
+  if (k == 0)
+    return body(u, k, seed);
+  const uint64_t place = (uint64_t)(u[0] * 0x1p31) << 31 | (uint64_t)(u[1] * 0x1p31);
+  double number = 0;
+  for (uint64_t j = 0; j < 6; j++)
+    number += case_normal(seed, place, 20 + j) < -2.6 + 1.2 * u[0] + 0.8 * u[1] * u[1];
+  return log1p(number);
+}
+
 struct count {
   size_t cases, held[INFERENCE_INPUTS], rounds;
   double width[INFERENCE_INPUTS];
 };
 
-static void run_twins(size_t inputs, size_t outputs, case_model model, size_t number, struct count *count) {
+static void run_twins(size_t inputs, size_t outputs, case_model model, const bool *counts, size_t number,
+                      struct count *count) {
   static struct case_fit fit;
   const bool bounded[INFERENCE_INPUTS] = {true, true, true, true};
   struct error error;
@@ -44,12 +57,12 @@ static void run_twins(size_t inputs, size_t outputs, case_model model, size_t nu
     for (size_t i = 0; i < inputs; i++)
       truth[i] = random_draw(c, 100, 1000000007, i);
     for (size_t k = 0; k < outputs; k++) {
-      const double error_of = k == 0 ? 0.01 : 0.05;
+      const double error_of = k == 0 ? 0.01 : counts ? 0 : 0.05;
       data[k] = (struct posterior_datum){.value = model(truth, k, 999000000 + c) + error_of * case_normal(c, 3, k),
                                          .error = error_of,
                                          .specimens = 1};
     }
-    fit = (struct case_fit){.inputs = inputs, .outputs = outputs};
+    fit = (struct case_fit){.inputs = inputs, .outputs = outputs, .counts = counts};
     assert_int_equal(case_solve(&fit, model, data, bounded, c + 1, &error), STATUS_OK);
     for (size_t i = 0; i < inputs; i++) {
       const double low = gsl_cdf_ugaussian_P(posterior_quantile(&fit.posterior, i, 0.05));
@@ -85,15 +98,23 @@ static void judge(const char *name, size_t inputs, const struct count *count) {
 static void two_inputs(void **state) {
   (void)state;
   struct count count;
-  run_twins(2, 2, body, cases(), &count);
+  run_twins(2, 2, body, NULL, cases(), &count);
   judge("two inputs, two summaries", 2, &count);
 }
 
 static void one_input(void **state) {
   (void)state;
   struct count count;
-  run_twins(1, 1, skewed, cases(), &count);
+  run_twins(1, 1, skewed, NULL, cases(), &count);
   judge("one input, skewed scatter", 1, &count);
+}
+
+static void few_fragments(void **state) {
+  (void)state;
+  const bool counts[2] = {false, true};
+  struct count count;
+  run_twins(2, 2, few, counts, cases(), &count);
+  judge("two inputs, a share and a small number", 2, &count);
 }
 
 static int start(void **state) {
@@ -103,6 +124,7 @@ static int start(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(two_inputs), cmocka_unit_test(one_input)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(two_inputs), cmocka_unit_test(one_input),
+                                     cmocka_unit_test(few_fragments)};
   return cmocka_run_group_tests(tests, start, NULL);
 }
