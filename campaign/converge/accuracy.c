@@ -135,6 +135,11 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->accuracy->open = knob;
   if (!ran)
     finding->levels = 0;
+  if (resolution && row->reference && row->step > 0 && row->resolution > finding->accuracy->widest_resolution) {
+    finding->accuracy->widest = knob;
+    finding->accuracy->widest_resolution = row->resolution;
+    finding->accuracy->widest_value = strtod(row->setting, NULL);
+  }
   if (resolution && row->open && row->reference)
     finding->beyond += left_beyond(finding, row->step);
   if (resolution && row->open && row->base && row->n == 0) /* no law reaches the scene's own level */
@@ -427,6 +432,20 @@ static const struct accuracy_option *finest_open(const struct accuracy *accuracy
   return finest;
 }
 
+/* The command that studies the knob at a level, one on either side, and the scene's own, whose error is wanted. */
+static void append_study(const struct accuracy *accuracy, const struct campaign *campaign, const struct knob *knob,
+                         double value, char *next, size_t size) {
+  const double finer = knob->step_power < 0 ? 2 : 0.5;
+  char own[64];
+  ladder_setting(knob, campaign->scene, own, sizeof own);
+  const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
+  text_append(next, size, "`clast converge %s --knob %s=", accuracy->path, knob->name);
+  for (size_t i = 0; i < 4; i++)
+    if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
+      text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit_of(campaign, knob));
+  text_append(next, size, "`");
+}
+
 /* More levels: with which, and what a run of the finest one takes. */
 static void advise_levels(const struct accuracy *accuracy, const struct campaign *campaign,
                           const struct accuracy_option *finest, char *next, size_t size) {
@@ -437,24 +456,19 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
   snprintf(setting, sizeof setting, "%.6g", value * finer);
   const double run_s = finest->run_s * work_at(campaign, knob, setting) / work_at(campaign, knob, finest->setting);
   progress_duration(run_s, time, sizeof time);
-  char own[64];
-  ladder_setting(knob, campaign->scene, own, sizeof own);
-  const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)}; /* the last one's error is wanted */
   text_append(
       next, size,
-      "The results show no limit in %s up to %.4g%s: no value of it is known to be enough, and more seeds alone "
-      "do not help. Finer levels may show a limit%s%s%s: `clast converge %s --knob %s=",
-      knob->name, value, unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
-      run_s > 0 ? ")" : "", accuracy->path, knob->name);
-  for (size_t i = 0; i < 4; i++)
-    if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
-      text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit);
-  text_append(next, size, "`");
+      "The results show no limit in %s up to %.4g%s%s: no value of it is known to be enough, and more seeds alone "
+      "do not help. Finer levels may show a limit%s%s%s: ",
+      knob->name, value, *unit ? " " : "", unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
+      run_s > 0 ? ")" : "");
+  append_study(accuracy, campaign, knob, value, next, size);
 }
 
 /* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
  * leave its middle. */
-static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_option *best, char *next, size_t size) {
+static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
+                         const struct accuracy_option *best, char *next, size_t size) {
   const double error = resolution_of(best), middle = best->middle * error;
   const double seeds = ceil((double)accuracy->n * pow((error - middle) / (accuracy->within - middle), 2));
   if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
@@ -464,6 +478,10 @@ static void advise_seeds(const struct accuracy *accuracy, const struct accuracy_
       text_append(next, size,
                   "More seeds are not likely to help: the resolution alone makes a difference of about %.2g", middle);
     text_append(next, size, ". No setting that was studied is enough");
+    if (middle >= accuracy->within && accuracy->widest) {
+      text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it: ", accuracy->widest->name);
+      append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, next, size);
+    }
     return;
   }
   double time_s = 0;
@@ -526,14 +544,15 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
     snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
   const bool a_guess = best->open && least <= accuracy->within; /* what lies beyond the finest level is not known */
   const bool by_resolution = !accuracy->open && best->middle * least >= accuracy->within;
-  if (*accuracy->left_out && !by_resolution)
+  const bool of_another = finest && strncmp(accuracy->left_out, finest->knob, strlen(finest->knob)) != 0;
+  if (*accuracy->left_out && !by_resolution && !of_another)
     text_append(next, sizeof next,
                 "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
                 accuracy->left_out, path, quantity);
   else if (finest)
     advise_levels(accuracy, campaign, finest, next, sizeof next);
   else
-    advise_seeds(accuracy, best, next, sizeof next);
+    advise_seeds(accuracy, campaign, best, next, sizeof next);
   if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
     text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %.2g%s}`, or ", quantity,
                 1.3 * least, unit);

@@ -40,12 +40,14 @@ struct accuracy {
   double mean;    /* with the scene's own settings */
   int64_t n;      /* seeds of the study there */
   double most;    /* no error of a share is larger than its distance from the farther end; else infinite */
-  const struct knob *open; /* of resolution, without a limit; NULL: none */
-  char left_out[160];      /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
-  char levels[2000];       /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
-  char unusual[256];       /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
-  const char *path;        /* the campaign's file with --set and --store of the command (option_words()); borrowed */
-  size_t reference;        /* the option with the smallest error; costs are relative to it */
+  const struct knob *open;   /* of resolution, without a limit; NULL: none */
+  const struct knob *widest; /* of resolution, the one that leaves most unknown at its finest level; NULL: none */
+  double widest_resolution, widest_value; /* what it leaves there, and this level */
+  char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
+  char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
+  char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
+  const char *path;   /* the campaign's file with --set and --store of the command (option_words()); borrowed */
+  size_t reference;   /* the option with the smallest error; costs are relative to it */
 };
 
 /* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its

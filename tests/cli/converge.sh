@@ -414,6 +414,7 @@ says "(resolution: grains)"
 sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
 says "More seeds are not likely to help: the resolution alone makes a difference of about 0.0"
+says "Finer levels of grains, which leaves most of it, may narrow it: "
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 says "best: no level is both cheaper and nearer" # the legend tells the columns that are shown
 # A study of several points names each of them, for people and for programs.
