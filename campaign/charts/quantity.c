@@ -156,8 +156,8 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
   return answer_end(&points);
 }
 
-/* The first `most` varied inputs, where the user named none: inputs[0] is NULL. At least `least` of them, of which a
- * chart needs numbers. Tells the choice on stderr. */
+/* Where the user named no input (all NULL): takes the first `most` that were varied, and names them on stderr. A chart
+ * needs `least` of them. */
 static status choose_axes(struct store *store, size_t least, size_t most, const char *inputs[AXES],
                           struct ask_column axes[LIMITS_AXES_OF_TABLE], struct error *error) {
   static const char *const option[] = {"--x", "--y"}, *const by = "--by";

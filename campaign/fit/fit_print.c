@@ -24,9 +24,10 @@ static double share_below(const struct fit *fit, size_t k, double transformed) {
 
 /* Share of predicted experiments beyond this datum, on the side where fewer are. */
 static double beyond(const struct fit *fit, size_t k) {
-  /* Of a count half a fragment on either side belongs to it: the law of the prediction is smooth. */
+  /* A count takes half a fragment on either side, since the law of the prediction is smooth; a mean of n counts 1/2n.
+   */
   const struct observed_datum *datum = &fit->observed->data[k];
-  const double half = fit->counts[k] ? 0.5 : 0;
+  const double half = fit->counts[k] ? 0.5 / (double)fit->data[k].specimens : 0;
   return fmin(share_below(fit, k, fit_transform(datum, datum->value + half)),
               1 - share_below(fit, k, fit_transform(datum, datum->value - half)));
 }

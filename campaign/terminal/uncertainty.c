@@ -10,7 +10,7 @@
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 static const double SMALL = 1e-3;       /* below it a common power of ten is shorter than zeros */
-static const double LARGE = 1e6;        /* from it on, too, where the error leaves only zeros in the last THOUSANDS */
+static const double LARGE = 1e6;        /* from it on, too, if the error leaves THOUSANDS zeros or more */
 enum { THOUSANDS = 3 };
 
 /* Decade of the last digit that an error allows: one digit of the error, two after a leading 1. Rounding moves it by at
