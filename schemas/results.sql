@@ -253,8 +253,8 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   gain REAL, -- Plain Monte Carlo's cost over that of the best control variate; 1: it saves nothing.
   distance REAL, -- Mean less its limit: the middle of the 95 % interval. Off: no limit is seen.
   distance_half_width REAL, -- Half width of that interval.
-  resolution REAL, -- What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all runs are equal, so that nothing tells it.
-  open INTEGER, -- 1: no limit is in sight, so that resolution may be larger.
+  resolution REAL, -- What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen; 0 where all runs are equal. Off for knobs that are no resolution.
+  open INTEGER, -- 1: no limit is in sight, so that resolution may be larger; with 0: no run differs.
   error REAL, -- What all knobs of group resolution together leave unknown at this level: half_width of the view resolution when the study ended. Off where it is not known.
   frontier INTEGER, -- 1: no level studied is both cheaper and nearer (Pareto).
   PRIMARY KEY (base_point_id, results_version, knob, quantity, level)
@@ -693,7 +693,8 @@ largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max
       AND c.quantity = p.quantity AND mean IS NOT NULL ORDER BY n DESC LIMIT 1), 1), 9e999) AS most
   FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
 SELECT point_id, results_version, quantity, min(error, most) AS half_width,
-  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN open THEN 'at-least' ELSE 'known' END AS verdict
+  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN NOT open THEN 'known'
+    WHEN error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict
 FROM largest WHERE error > 0 OR open < 2;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
@@ -812,7 +813,7 @@ INSERT INTO column_doc VALUES ('convergence', 'mean', NULL, 'Mean over seeds.', 
 
 INSERT INTO column_doc VALUES ('convergence', 'n', '1', 'Seeds with a usable result.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'open', NULL, '1: no limit is in sight, so that resolution may be larger.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'open', NULL, '1: no limit is in sight, so that resolution may be larger; with 0: no run differs.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'paired', NULL, '1: levels are compared seed by seed.', 1);
 
@@ -822,7 +823,7 @@ INSERT INTO column_doc VALUES ('convergence', 'quantity', NULL, 'Result, as a co
 
 INSERT INTO column_doc VALUES ('convergence', 'reference', NULL, '1: the finest level, or the choice that the others are compared with.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'resolution', NULL, 'What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all runs are equal, so that nothing tells it.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'resolution', NULL, 'What this knob leaves unknown at this level: the largest distance to the limit in its interval, or |bias| and half width where no limit is seen; 0 where all runs are equal. Off for knobs that are no resolution.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'results_version', NULL, 'version of the engine''s results', 0);
 
@@ -1056,7 +1057,7 @@ INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over r
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution_verdict', '1', 'known, at least, diverges, or not studied: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard deviation between runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
@@ -1082,7 +1083,7 @@ INSERT INTO column_doc VALUES ('points', 'fragment_count_mean', '1', 'mean over 
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution', '1', 'how far finer settings may move the mean (view resolution): Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution_verdict', '1', 'known, at least, diverges, or not studied: Fragments of any size, single grains (dust) included.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Fragments of any size, single grains (dust) included.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_sd', '1', 'standard deviation between runs: Fragments of any size, single grains (dust) included.', 0);
 
@@ -1100,7 +1101,7 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean ove
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', '1', 'known, at least, diverges, or not studied: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard deviation between runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
@@ -1118,7 +1119,7 @@ INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean 
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, at least, diverges, or not studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, no-difference, at-least, diverges, or not-studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
@@ -1144,7 +1145,7 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_mean', '1', 'mean over
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution_verdict', '1', 'known, at least, diverges, or not studied: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_sd', '1', 'standard deviation between runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
@@ -1162,7 +1163,7 @@ INSERT INTO column_doc VALUES ('resolution', 'quantity', NULL, 'the result, as a
 
 INSERT INTO column_doc VALUES ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied', 0);
 
-INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
+INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known; no-difference: all runs of the settings are equal; at-least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
 
 INSERT INTO column_doc VALUES ('result_dem', 'angular_momentum_error', '1', 'Change of the angular momentum about the origin, over the larger of its value at the start and the sum of the momenta times half of the body''s size. Off for bodies between moving sides.', 1);
 

@@ -94,6 +94,7 @@ function tooltip(columns, title) {
 // What finer settings may change, as far as clast converge knows.
 function resolutionText({resolution, verdict}) {
   if (resolution === null) return 'not studied';
+  if (verdict === 'no-difference') return 'no difference seen';
   return `${verdict === 'known' ? '±' : '>='} ${number(resolution, 2)}`;
 }
 
@@ -275,7 +276,7 @@ function resolutionSentence(rows) {
   const studied = rows.filter((row) => row.resolution !== null), weak = rows.some((row) => row.weak) ? ' ~: weak, too few runs for the interval.' : '';
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;
   const most = studied.reduce((one, row) => (row.resolution > one.resolution ? row : one));
-  const verdict = studied.every((row) => row.verdict === 'known') ? 'known' : 'at-least';
+  const verdict = ['diverges', 'at-least', 'known'].find((word) => studied.some((row) => row.verdict === word)) ?? 'no-difference';
   return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${verdict === 'known' ? 'up to ' : ''}${resolutionText({...most, verdict})}.${weak}`;
 }
 

@@ -99,17 +99,17 @@ static void resolve(struct convergence_row *level, const struct limit_range *dis
   level->resolution = fmax(fabs(distance->low), fabs(distance->high));
 }
 
-void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
-                         double bound) {
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law,
+                         const size_t *place) {
   double coarser = NOTHING; /* |bias| and half width of the last level before the reference */
   for (size_t l = 0; l < count; l++) {
     struct convergence_row *level = &levels[l];
     const bool stepped = !isnan(level->step);
-    level->open = stepped && law->verdict != LIMIT_SEEN;
+    level->open = (stepped && law->verdict != LIMIT_SEEN) || law->verdict == LIMIT_CONSTANT;
     if (law->verdict == LIMIT_SEEN && place[l] < LIMIT_LEVELS)
       resolve(level, &law->distance[place[l]]);
     else if (law->verdict == LIMIT_CONSTANT)
-      level->resolution = bound;
+      level->resolution = level->n > 0 ? 0 : NOTHING;
     else if (!level->reference)
       level->resolution = fabs(level->bias) + level->bias_half_width;
     else
@@ -192,9 +192,9 @@ static const struct field rows[] = {
     LEVEL(distance_half_width, 0, .doc = "Half width of that interval."),
     LEVEL(resolution, 0,
           .doc = "What this knob leaves unknown at this level: the largest distance to the limit in its interval, or "
-                 "|bias| and half width where no limit is seen. Off for knobs that are no resolution, and where all "
-                 "runs are equal, so that nothing tells it."),
-    LEVEL_FLAG(open, .doc = "1: no limit is in sight, so that resolution may be larger."),
+                 "|bias| and half width where no limit is seen; 0 where all runs are equal. Off for knobs that are no "
+                 "resolution."),
+    LEVEL_FLAG(open, .doc = "1: no limit is in sight, so that resolution may be larger; with 0: no run differs."),
     LEVEL(error, 0,
           .doc = "What all knobs of group resolution together leave unknown at this level: half_width of the view "
                  "resolution when the study ended. Off where it is not known."),

@@ -134,9 +134,9 @@ struct convergence_row { /* one level of one knob, for one quantity */
   double cost_ratio, break_even, gain;
   double distance, distance_half_width; /* mean less the limit, middle and half width of the interval; NaN: no limit */
   double resolution; /* error that this knob alone leaves at this level (convergence_resolve). NaN: a model's knob */
-  bool open;         /* no limit is known: resolution may be larger */
+  bool open;         /* no limit is known: resolution may be larger. With 0: no difference was seen */
   double error;      /* that all knobs together leave at this level, by the store's view resolution. NaN: not studied */
-  bool at_least;     /* error is no bound: it may be larger */
+  bool at_least;     /* error is no bound: it may be larger. With 0: no difference was seen */
   bool frontier;
 };
 extern const struct field_table convergence_table;
@@ -153,11 +153,11 @@ extern const struct field_table convergence_limit_table;
 /* Fills distance, resolution and open of every level of a ladder, coarse to fine. With a limit, resolution is the
  * largest distance within the interval. Without one: |bias| and half width against the finest level; the finest level
  * itself takes those of the next coarser one; if the knob has no step, the finest level counts as exact and has 0. When
- * all runs of the ladder are equal, the knob leaves what the interval of the mean leaves: NaN (cannot be told), or
- * `bound` of a share. Levels without runs get NaN. law: of the levels with index place[l]; place[l] is at least
+ * all runs of the ladder are equal, no difference was seen: 0 and open. How many other runs may differ is told by the
+ * interval over seeds. Levels without runs get NaN. law: of the levels with index place[l]; place[l] is at least
  * LIMIT_LEVELS for a level without one. */
-void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
-                         double bound);
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law,
+                         const size_t *place);
 /* The same for the scene's own level when it was left out; else nothing. `own`: the law at its step, of limit_infer().
  * Where no law reaches it, its resolution is the largest of the levels, or that of the finest one if it is finer still,
  * and open tells that it is no bound. */

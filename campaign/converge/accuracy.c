@@ -131,7 +131,8 @@ static status take_open(struct finding *finding, const struct convergence_row *r
                                 (finding->campaign->accuracy_of_value ? fabs(row->mean) : 1);
   }
   const bool resolution = knob && knob->group == KNOB_RESOLUTION, ran = strcmp(finding->ran, row->knob) == 0;
-  if (resolution && row->base && row->open && !finding->accuracy->open)
+  const bool moves = row->resolution != 0; /* 0 where no run of the knob differs */
+  if (resolution && row->base && row->open && moves && !finding->accuracy->open)
     finding->accuracy->open = knob;
   if (!ran)
     finding->levels = 0;
@@ -470,7 +471,8 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
 static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
                          const struct accuracy_option *best, char *next, size_t size) {
   const double error = resolution_of(best), middle = best->middle * error;
-  const double seeds = ceil((double)accuracy->n * pow((error - middle) / (accuracy->within - middle), 2));
+  const double factor = error > 0 ? (error - middle) / (accuracy->within - middle) : 2; /* 0: no run differs yet */
+  const double seeds = ceil((double)accuracy->n * factor * factor);
   if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
     if (middle < accuracy->within)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
@@ -503,11 +505,15 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
       text_append(knobs, sizeof knobs, "%s%s", *knobs ? "," : " --knob ", option->knob);
   }
   progress_duration(time_s, time, sizeof time);
-  text_append(next, size,
-              "More seeds narrow the interval of this error. The study has %" PRId64
-              "; if its middle stays at %.2g, about %.0f at every level are needed, which take %s of processor time: "
-              "`clast converge %s%s%s --max-seeds %.0f --within off --seeds %.0f`",
-              accuracy->n, middle, seeds, time, accuracy->path, knobs, own, seeds, seeds);
+  if (error > 0)
+    text_append(next, size,
+                "More seeds narrow the interval of this error. The study has %" PRId64
+                "; if its middle stays at %.2g, about %.0f at every level are needed, which take",
+                accuracy->n, middle, seeds);
+  else
+    text_append(next, size, "More seeds may show a difference; %.0f at every level take", seeds);
+  text_append(next, size, " %s of processor time: `clast converge %s%s%s --max-seeds %.0f --within off --seeds %.0f`",
+              time, accuracy->path, knobs, own, seeds, seeds);
 }
 
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
@@ -537,7 +543,7 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", share[32] = "", more[256] = "", chosen[256], text[UNIT_TEXT];
+  char next[1600] = "", share[32] = "", more[256] = "", chosen[256], smallest[512], text[UNIT_TEXT];
   const char *unit = width_unit(campaign, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
@@ -556,16 +562,21 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
     text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %.2g%s}`, or ", quantity,
                 1.3 * least, unit);
-  return status_fail(
-      error, STATUS_CONTENT,
-      "accuracy: no setting %s %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64 " seeds). The smallest error is "
-      "%s%.2g%s%s, with %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
-      a_guess ? "is known to give" : "gives", quantity, share, accuracy->within, unit, *share ? ")" : "",
-      accuracy->mean, unit, accuracy->n, best->open ? "about " : "", least, unit,
-      a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
-      : best->open ? " (a guess, as no limit is seen)"
-                   : "",
-      chosen, next, more, path);
+  snprintf(smallest, sizeof smallest, "The smallest error is %s%.2g%s%s, with %s", best->open ? "about " : "", least,
+           unit,
+           a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
+           : best->open ? " (a guess, as no limit is seen)"
+                        : "",
+           chosen);
+  if (best->open && !(least > 0))
+    snprintf(smallest, sizeof smallest,
+             "No run of the study differs between the settings, which does not tell how far "
+             "other runs may be");
+  return status_fail(error, STATUS_CONTENT,
+                     "accuracy: no setting %s %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64
+                     " seeds). %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
+                     a_guess ? "is known to give" : "gives", quantity, share, accuracy->within, unit, *share ? ")" : "",
+                     accuracy->mean, unit, accuracy->n, smallest, next, more, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -616,7 +627,9 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
       table_text(table, study_show_error(option->error, option->open, text));
     else
       table_real(table, option->error);
-    table_text(table, option->open ? "at least" : option->extrapolated ? "extrapolated" : "yes");
+    table_text(table, option->open           ? option->error > 0 ? "at least" : "none seen"
+                      : option->extrapolated ? "extrapolated"
+                                             : "yes");
     if (guessed)
       table_real(table, option->beyond);
     if (option->seeds)

@@ -138,20 +138,11 @@ void study_law(const struct study *study, const struct study_ladder *ladder, siz
     law->verdict = LIMIT_TOO_FEW;
 }
 
-/* How far the mean of a share may be off when all its runs are equal. NaN: not a share. */
-static double bound_of(size_t n, const double *values, bool share) {
-  struct sample_summary summary = sample_summarise(n, values, CONFIDENCE);
-  if (!share)
-    return NOTHING;
-  sample_of_share(&summary, CONFIDENCE);
-  return fmax(summary.mean - summary.low, summary.high - summary.mean);
-}
-
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found) {
   const struct field *result = study->quantity[quantity].row;
   const char *column = study->quantity[quantity].column;
-  const size_t n = (size_t)ladder->seeds, reference = study_reference(ladder);
+  const size_t n = (size_t)ladder->seeds;
   const bool share = result && field_is_share(result);
   struct limit_law law;
   size_t place[KNOB_LEVELS];
@@ -174,7 +165,7 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", column);
   study_law(study, ladder, quantity, &law, place, own.step > 0, &own);
   convergence_limit_fill(&law, &found->limit);
-  convergence_resolve(found->count, found->rows, &law, place, bound_of(n, ladder->values[quantity][reference], share));
+  convergence_resolve(found->count, found->rows, &law, place);
   convergence_resolve_own(found->count, found->rows, &law, place, &own);
   for (size_t l = 0; l < found->count && !found->adds; l++) {
     struct convergence_row *row = &found->rows[l];

@@ -1,6 +1,7 @@
 /* A study of convergence as tables, as rows for programs, and as pictures. */
 #include "campaign/converge/study.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +42,8 @@ static const struct {
      "error: how far finer settings may move the mean, summed over all knobs of group resolution, as in `clast "
      "estimates` and `clast plan`; other knobs than that of the row are at *. A knob leaves its largest "
      "distance to the limit by the law of all seeds, which is not this mean minus the limit (none seen: |bias| "
-     "+ half width, which is no bound: >=)."},
+     "+ half width, which is no bound: >=). No difference seen: runs of equal seed are equal at all levels, which adds "
+     "nothing; how many other runs may differ is part of the interval over seeds."},
     {"frontier", "best: no level is both cheaper and nearer."},
 };
 enum { LEGEND = sizeof legend / sizeof legend[0] };
@@ -113,8 +115,15 @@ static status find_shown(const struct printing *printing, size_t from, size_t qu
   return study_errors(printing->study, from, quantity, printing->store, *count, found, error);
 }
 
+static enum ask_resolution_verdict verdict_of(double error, bool at_least) {
+  return isnan(error) ? ASK_RESOLUTION_NOT_STUDIED
+         : !at_least  ? ASK_RESOLUTION_KNOWN
+         : error > 0  ? ASK_RESOLUTION_AT_LEAST
+                      : ASK_RESOLUTION_NO_DIFFERENCE;
+}
+
 const char *study_show_error(double error, bool at_least, char text[UNCERTAINTY_TEXT]) {
-  uncertainty_resolution_cell(at_least ? ASK_RESOLUTION_AT_LEAST : ASK_RESOLUTION_KNOWN, error, text);
+  uncertainty_resolution_cell(verdict_of(error, at_least), error, text);
   return text;
 }
 
@@ -181,6 +190,21 @@ static void print_change(const struct knob *knob, const struct study_found *foun
           knob->inputs[0].path);
 }
 
+/* How many seeds show no difference between the levels of the knob; 0: some do, or it has no two levels. */
+static int64_t equal_seeds(const struct study_found *found) {
+  int64_t levels = 0, seeds = 0;
+  for (size_t l = 0; l < found->count; l++) {
+    const struct convergence_row *row = &found->rows[l];
+    if (row->n == 0)
+      continue;
+    if (row->bias != 0 || row->bias_half_width != 0)
+      return 0;
+    levels++;
+    seeds = row->n;
+  }
+  return found->adds && levels > 1 ? seeds : 0;
+}
+
 static bool has_runs(const struct study_found *found) {
   int64_t n = 0;
   for (size_t l = 0; l < found->count; l++)
@@ -228,6 +252,13 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     before = ", ";
   }
   fprintf(out, "%s%s", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");
+  before = " No difference seen (seeds): ";
+  for (size_t i = 0; i < count; i++)
+    if (equal_seeds(&found[i]) > 0) {
+      fprintf(out, "%s%s (%" PRId64 ")", before, found[i].rows[0].knob, equal_seeds(&found[i]));
+      before = ", ";
+    }
+  fputs(*before == ',' ? "." : "", out);
   before = " Not studied, and not in this error: ";
   for (size_t i = 0; i < count; i++)
     if (found[i].adds && !has_runs(&found[i])) {
@@ -253,7 +284,7 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
             "put them this far off in %.2g %% of studies); ",
             100 * limit->fit);
   } else if (limit->verdict == LIMIT_CONSTANT)
-    fprintf(out, "all runs are equal, so that the limit cannot be told; ");
+    fprintf(out, "no difference seen, all runs are equal; ");
   else if (!isnan(found->rows[0].step))
     fprintf(out, "no limit inferred, which needs three levels and three seeds; ");
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
@@ -271,9 +302,9 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].n == 0) {
       fprintf(out, "%s %s%s", before, found->rows[l].setting,
-              !found->rows[l].base  ? ""
-              : found->rows[l].open ? " *"
-                                    : " *, whose error follows from the law");
+              !found->rows[l].base                                  ? ""
+              : found->rows[l].open || limit->verdict != LIMIT_SEEN ? " *"
+                                                                    : " *, whose error follows from the law");
       before = ",";
     }
   fputc('\n', out);
@@ -393,9 +424,7 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
         print_value(table, &convergence_table.rows[c], &found[i].rows[l]);
       for (size_t c = OF_LIMIT; c < convergence_limit_table.count; c++)
         print_value(table, &convergence_limit_table.rows[c], &found[i].limit);
-      table_text(table, ask_resolution_names[isnan(found[i].rows[l].error) ? ASK_RESOLUTION_NOT_STUDIED
-                                             : found[i].rows[l].at_least   ? ASK_RESOLUTION_AT_LEAST
-                                                                           : ASK_RESOLUTION_KNOWN]);
+      table_text(table, ask_resolution_names[verdict_of(found[i].rows[l].error, found[i].rows[l].at_least)]);
       table_doubt_cells(table, &doubts);
     }
   return STATUS_OK;

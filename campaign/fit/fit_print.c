@@ -419,8 +419,7 @@ static void tell_errors(const struct fit *fit, FILE *out) {
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     char label[LABEL];
     const struct ask_resolution *r = &fit->resolution[k];
-    if (!isnan(fit->observed->data[k].resolution) || r->verdict == ASK_RESOLUTION_KNOWN ||
-        r->verdict == ASK_RESOLUTION_NOT_STUDIED)
+    if (!isnan(fit->observed->data[k].resolution) || !(r->half_width > 0) || r->verdict == ASK_RESOLUTION_KNOWN)
       continue;
     observed_label(fit->observed, k, label, sizeof label);
     words_print(

@@ -127,12 +127,16 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
   case ASK_RESOLUTION_DIVERGES:
     snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (%s)", converge);
     return;
+  case ASK_RESOLUTION_NO_DIFFERENCE:
+    text_append(text, UNCERTAINTY_TEXT, "no difference seen (resolution: %s)", resolution->knobs);
+    break;
   case ASK_RESOLUTION_KNOWN:
-  case ASK_RESOLUTION_AT_LEAST: break;
+  case ASK_RESOLUTION_AT_LEAST: {
+    const bool known = resolution->verdict == ASK_RESOLUTION_KNOWN;
+    text_append(text, UNCERTAINTY_TEXT, "%s%s %.2g (resolution: %s)", known && resolution->points > 1 ? "up to " : "",
+                known ? "\xc2\xb1" : ">=", resolution->half_width, resolution->knobs);
   }
-  const bool known = resolution->verdict == ASK_RESOLUTION_KNOWN;
-  text_append(text, UNCERTAINTY_TEXT, "%s%s %.2g (resolution: %s)", known && resolution->points > 1 ? "up to " : "",
-              known ? "\xc2\xb1" : ">=", resolution->half_width, resolution->knobs);
+  }
   if (resolution->studied < resolution->points)
     text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, %s studies others",
                 (long long)resolution->studied, (long long)resolution->points, converge);
@@ -141,6 +145,7 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {
   switch (verdict) {
   case ASK_RESOLUTION_KNOWN: snprintf(text, UNCERTAINTY_TEXT, "%.2g", half_width); return;
+  case ASK_RESOLUTION_NO_DIFFERENCE: snprintf(text, UNCERTAINTY_TEXT, "none seen"); return;
   case ASK_RESOLUTION_AT_LEAST:
   case ASK_RESOLUTION_DIVERGES: snprintf(text, UNCERTAINTY_TEXT, ">= %.2g", half_width); return;
   case ASK_RESOLUTION_NOT_STUDIED: snprintf(text, UNCERTAINTY_TEXT, "not studied"); return;

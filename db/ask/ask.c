@@ -319,6 +319,7 @@ struct answer ask_columns_view(struct store *store, const char *view, struct err
 
 const char *const ask_resolution_names[] = {[ASK_RESOLUTION_NOT_STUDIED] = "not-studied",
                                             [ASK_RESOLUTION_KNOWN] = "known",
+                                            [ASK_RESOLUTION_NO_DIFFERENCE] = "no-difference",
                                             [ASK_RESOLUTION_AT_LEAST] = "at-least",
                                             [ASK_RESOLUTION_DIVERGES] = "diverges"};
 
@@ -369,7 +370,8 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
 
   ANSWER found = answer_to(
       store, error,
-      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least') "
+      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least'), "
+      "max(verdict = 'known') "
       "FROM (SELECT point_id, max(results_version) AS results_version FROM "
       "point_total"
       "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
@@ -382,7 +384,8 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
     if (out->studied > 0)
       out->verdict = answer_integer(&found, 3)   ? ASK_RESOLUTION_DIVERGES
                      : answer_integer(&found, 4) ? ASK_RESOLUTION_AT_LEAST
-                                                 : ASK_RESOLUTION_KNOWN;
+                     : answer_integer(&found, 5) ? ASK_RESOLUTION_KNOWN
+                                                 : ASK_RESOLUTION_NO_DIFFERENCE;
   }
   TRY(answer_end(&found));
   if (out->studied == 0)

@@ -179,10 +179,11 @@ struct answer ask_columns_view(struct store *store, const char *view, struct err
  * its precision. More seeds do not reduce it, and the interval over seeds does not include it. ---- */
 
 enum ask_resolution_verdict {
-  ASK_RESOLUTION_NOT_STUDIED, /* the store has no study of the point's scene */
-  ASK_RESOLUTION_KNOWN,       /* half_width is a bound */
-  ASK_RESOLUTION_AT_LEAST,    /* half_width is the known part; the error may be larger, because no limit is known yet */
-  ASK_RESOLUTION_DIVERGES,    /* studied: the quantity does not converge. half_width is the known part */
+  ASK_RESOLUTION_NOT_STUDIED,   /* the store has no study of the point's scene */
+  ASK_RESOLUTION_KNOWN,         /* half_width is a bound */
+  ASK_RESOLUTION_NO_DIFFERENCE, /* no run differs between the settings: half_width is 0, and no bound */
+  ASK_RESOLUTION_AT_LEAST, /* half_width is the known part; the error may be larger, because no limit is known yet */
+  ASK_RESOLUTION_DIVERGES, /* studied: the quantity does not converge. half_width is the known part */
 };
 
 struct ask_resolution {
@@ -195,7 +196,7 @@ struct ask_resolution {
                         "" when several files made them */
 };
 
-/* "not-studied", "known", "at-least", "diverges": as in the views. */
+/* "not-studied", "known", "no-difference", "at-least", "diverges": as in the views. */
 extern const char *const ask_resolution_names[];
 /* The verdict named in a column of the views or of ask_group; any other text, or NULL: not studied. */
 enum ask_resolution_verdict ask_resolution_verdict(const char *verdict);

@@ -256,8 +256,8 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
     fprintf(out,
             "iif(count(e%1$zu) = count(*), max(e%1$zu), NULL) AS e%1$zu, CASE WHEN count(e%1$zu) < count(*) THEN "
             "'not-studied' WHEN max(v%1$zu = 'diverges') THEN 'diverges' WHEN max(v%1$zu = 'at-least') THEN 'at-least' "
-            "ELSE "
-            "'known' END AS v%1$zu, sum(r%1$zu) AS r%1$zu, sum(b%1$zu) AS b%1$zu",
+            "WHEN max(v%1$zu = 'known') THEN 'known' ELSE 'no-difference' END AS v%1$zu, sum(r%1$zu) AS r%1$zu, "
+            "sum(b%1$zu) AS b%1$zu",
             i);
   }
   fputs(",\n  words(", out);

@@ -27,5 +27,6 @@ largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max
       AND c.quantity = p.quantity AND mean IS NOT NULL ORDER BY n DESC LIMIT 1), 1), 9e999) AS most
   FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
 SELECT point_id, results_version, quantity, min(error, most) AS half_width,
-  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN open THEN 'at-least' ELSE 'known' END AS verdict
+  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN NOT open THEN 'known'
+    WHEN error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict
 FROM largest WHERE error > 0 OR open < 2; -- with a knob that never ran, at least 0 tells nothing

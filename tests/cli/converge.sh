@@ -89,6 +89,18 @@ store.execute("update convergence_limit set verdict = iif(knob = 'precision', 'c
 store.commit()
 PY
 same "$(number equal.db "select count(*) from resolution where verdict <> 'at-least'")" 0 "knobs that tell nothing, left out"
+# Bodies that no setting moves: no difference is told, on every screen by the same word, and it is no error.
+expect 0 "$clast" converge disc-explosion --set body.diameter='8 cm' --set charge.energy='1 J/m' \
+  --set stop.end_time='0.1 ms' --knob grains=2cm,1.4cm,1cm --knob stop --seeds 3 --within off --store whole.db -j 2
+prints "none seen. No difference seen (seeds): grains (3), stop (3)."
+expect 0 "$clast" stats whole.db --studies -Q largest_fraction
+prints "none seen"; says "no difference seen (resolution: grains, stop)"
+same "$(number whole.db "select count(*) from resolution where half_width > 0 or verdict <> 'no-difference'")" 0 "equal runs, told as an error"
+printf '%s\n' 'name: whole' 'scene: disc-explosion' 'store: whole.db' \
+  'set: {body.diameter: 8 cm, charge.energy: 1 J/m, stop.end_time: 0.1 ms}' \
+  'accuracy: {quantity: largest_fraction, within: 5 %}' >whole.yaml
+expect 65 "$clast" plan whole.yaml
+says "No run of the study differs between the settings"
 same "$(number ball.db "select count(*) from point_input where path = 'target.turned' and value = 0")" 0 "points with a lattice that is not turned"
 
 # Named settings of a scene: a level each, and SCENE@NAME for every command.
@@ -437,4 +449,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 107
+done_after 111

@@ -351,6 +351,14 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   studied(store, point, "grains", 0.05, true, LIMIT_NOT_SEEN);
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_DIVERGES);
+  /* Settings whose runs are all equal add nothing. When no setting moved a run, nothing else is told. */
+  studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
+  studied(store, point, "time_step", 0, true, LIMIT_CONSTANT);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && found.half_width == 0.05);
+  studied(store, point, "grains", 0, true, LIMIT_CONSTANT);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(found.verdict == ASK_RESOLUTION_NO_DIFFERENCE && found.half_width == 0);
   assert_int_equal(ask_resolution(store, point, "dust_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
   assert_int_equal(store_close(store, &error), STATUS_OK);

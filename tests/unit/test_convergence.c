@@ -74,7 +74,7 @@ static void resolutions(void **state) {
                                      {.step = 1, .mean = 0.6, .reference = true}};
   static const size_t place[3] = {LIMIT_LEVELS, 0, 1}; /* the coarsest has no run */
   struct limit_law law = {.verdict = LIMIT_SEEN, .distance = {{-0.14, -0.2, -0.1}, {-0.1, -0.15, 0.05}}};
-  convergence_resolve(3, level, &law, place, NAN);
+  convergence_resolve(3, level, &law, place);
   NEAR(level[0].resolution, 0.12, 1e-12);
   NEAR(level[1].distance, -0.15, 1e-12);
   NEAR(level[1].distance_half_width, 0.05, 1e-12);
@@ -83,22 +83,22 @@ static void resolutions(void **state) {
   assert_false(level[0].open);
 
   law.verdict = LIMIT_NOT_SEEN;
-  convergence_resolve(3, level, &law, place, NAN);
+  convergence_resolve(3, level, &law, place);
   NEAR(level[0].resolution, 0.12, 1e-12);
   NEAR(level[2].resolution, 0.05, 1e-12); /* as far as the next coarser level at least */
   assert_true(level[0].open && level[2].open);
 
-  /* Equal runs: the bound of a share, or nothing. */
+  /* Equal runs: no difference, which is no bound. A level without runs tells nothing. */
   law.verdict = LIMIT_CONSTANT;
-  convergence_resolve(3, level, &law, place, 0.3);
-  assert_true(level[0].resolution == 0.3 && level[2].resolution == 0.3 && level[2].open);
-  convergence_resolve(3, level, &law, place, NAN);
-  assert_true(isnan(level[2].resolution));
+  level[1].n = level[2].n = 3;
+  convergence_resolve(3, level, &law, place);
+  assert_true(isnan(level[0].resolution));
+  assert_true(level[1].resolution == 0 && level[1].open && level[2].resolution == 0 && level[2].open);
 
   /* Exact is exact: a choice has no step. */
   level[0].step = level[1].step = level[2].step = NAN;
   law.verdict = LIMIT_TOO_FEW;
-  convergence_resolve(3, level, &law, place, NAN);
+  convergence_resolve(3, level, &law, place);
   assert_true(level[2].resolution == 0 && !level[2].open);
 }
 

@@ -72,7 +72,11 @@ static void cells(void **state) {
   (void)state;
   static const struct {
     const char *verdict, *expected;
-  } cases[] = {{"known", "0.061"}, {"at-least", ">= 0.061"}, {"diverges", ">= 0.061"}, {NULL, "not studied"}};
+  } cases[] = {{"known", "0.061"},
+               {"no-difference", "none seen"},
+               {"at-least", ">= 0.061"},
+               {"diverges", ">= 0.061"},
+               {NULL, "not studied"}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[UNCERTAINTY_TEXT];
     uncertainty_resolution_cell(ask_resolution_verdict(cases[i].verdict), 0.0612, text);
