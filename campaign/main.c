@@ -7,6 +7,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
+#include "campaign/farm/farm.h"
 #include "campaign/terminal/words.h"
 #include "engine/cpu_class.h"
 
@@ -17,6 +18,7 @@ static bool colour(void) {
 
 /* Prints an error. A report on a document has its own "file:line:col: error:" lines and is printed as it is. */
 static void print_error(struct error *error) {
+  words_legend(false);
   text_make_plain(error->message, "\n\t"); /* it may quote a file from an untrusted source */
   size_t line = strcspn(error->message, "\n");
   const char *located = strstr(error->message, ": error: ");
@@ -80,7 +82,7 @@ static void keep_standard_files(void) {
 
 int main(int argc, char **argv) {
   keep_standard_files();
-  words_wrap_stderr();
+  words_wrap_stderr(farm_under_mpi());
   signal(SIGPIPE, SIG_IGN); /* a closed pipe (`| head`) must not end the program in the middle of a commit */
   signal(SIGXFSZ, SIG_IGN); /* a file at its limit (`ulimit -f`) then gives a write error, like a full disk */
   analysis_init();

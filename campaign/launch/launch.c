@@ -121,7 +121,8 @@ status launch_quiet_ranks(status code, struct error *error) {
 
 enum { MANY_POINTS = 64 }; /* above this number the table at the end is printed only with --json or --csv */
 
-static void print_summary(const struct driver_summary *summary, const char *store, double wall_s, status code) {
+static void print_summary(const struct driver_summary *summary, const char *store, const char *quantity, double wall_s,
+                          status code) {
   launch_tell_runs(store, summary->runs_done, summary->runs_reused, summary->cpu_s, wall_s);
   fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " complete", summary->points_done, summary->points);
   if (summary->points_interval_met || summary->points_cap_reached)
@@ -136,9 +137,11 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fprintf(stderr, "%" PRId64 " run%s beyond the stopping rule: stored, but not counted (surplus)\n",
             summary->runs_surplus, text_plural(summary->runs_surplus));
   uncertainty_excluded(summary->runs_excluded, store);
-  if (summary->runs_doubtful)
-    fprintf(stderr, "%" PRId64 " run%s in doubt (!); means and stopping rules count %s\n", summary->runs_doubtful,
-            text_plural(summary->runs_doubtful), summary->runs_doubtful == 1 ? "it" : "them");
+  if (summary->runs_warned)
+    fprintf(stderr,
+            "%" PRId64 " run%s warned, %" PRId64 " of them in doubt in %s (!); means and stopping rules count %s\n",
+            summary->runs_warned, text_plural(summary->runs_warned), summary->runs_doubtful, quantity,
+            summary->runs_warned == 1 ? "it" : "them");
   if (summary->attempts_failed)
     fprintf(stderr, "%" PRId64 " attempt%s failed: clast query %s --named failures\n", summary->attempts_failed,
             text_plural(summary->attempts_failed), store);
@@ -227,7 +230,7 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
 
   const bool done = code == STATUS_OK || code == STATUS_FAILED_RUNS;
   if ((done || code == STATUS_STOPPED) && !quiet)
-    print_summary(&summary, store, wall_s, code);
+    print_summary(&summary, store, campaign->quantity, wall_s, code);
   if (!done)
     return code;
   warn_too_wide(campaign, &summary);

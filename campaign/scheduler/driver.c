@@ -126,6 +126,11 @@ static bool remember(struct driver *driver, int64_t id) {
   return true;
 }
 
+static void count_doubts(struct driver *driver, const struct point_replicate *replicate) {
+  driver->summary.runs_warned += replicate->warned;
+  driver->summary.runs_doubtful += replicate->doubtful;
+}
+
 /* Counts a run that has results, stored or new. */
 static void count_run(struct driver *driver, struct point *point, int64_t r, const struct ask_run_of_point *run,
                       bool fields) {
@@ -142,7 +147,10 @@ static void count_run(struct driver *driver, struct point *point, int64_t r, con
   summary->runs_excluded += run->excluded;
   summary->runs_surplus += run->surplus;
   summary->runs_censored += usable && run->state == OUTCOME_END_TIME;
-  summary->runs_doubtful += !run->excluded && mark != CONDITION_SOUND;
+  point->replicates[r].warned = usable && condition_doubted(point->scene->kind->conditions, run->warnings);
+  point->replicates[r].doubtful = usable && mark != CONDITION_SOUND;
+  if (!run->surplus)
+    count_doubts(driver, &point->replicates[r]);
 }
 
 /* Takes over a stored run. */
@@ -183,6 +191,7 @@ static status admit(struct driver *driver, struct point *point, struct error *er
       any = true;
       replicate->surplus = false;
       driver->summary.runs_surplus--;
+      count_doubts(driver, replicate);
     } else if (r >= prefix && !replicate->surplus) {
       prefix = r + 1;
     }

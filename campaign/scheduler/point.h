@@ -46,6 +46,7 @@ enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED, POINT_LEFT
 struct point_replicate {
   unsigned char state;    /* enum point_state */
   bool surplus;           /* stored with surplus = 1 */
+  bool warned, doubtful;  /* a usable run whose words mark some result; the main quantity */
   bool fields;            /* its HDF5 file exists, or there is nothing to write: an invalid run has no body */
   bool replay, replaying; /* its HDF5 file is still to be computed; is being computed */
   int lost;               /* attempts of this invocation that the machine ended */

@@ -153,7 +153,8 @@ struct driver_summary {
   int64_t runs_reused, runs_done; /* found in the store; computed now */
   int64_t runs_failed;            /* all attempts failed, or the run ended in a failed state; includes reused runs */
   int64_t runs_left;       /* the machine ended limits.attempts attempts: the same command tries these runs again */
-  int64_t runs_doubtful;   /* whose words mark the main quantity */
+  int64_t runs_warned;     /* that count, and break a condition: as `clast status` tells it */
+  int64_t runs_doubtful;   /* of these, whose words mark the main quantity */
   int64_t runs_censored;   /* ended at the hard end time: usable, but fragmentation may be incomplete */
   int64_t runs_surplus;    /* in the store, but left out of statistics */
   int64_t runs_excluded;   /* by a person: for a rule, runs without a value */

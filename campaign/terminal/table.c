@@ -1,5 +1,6 @@
 /* Four formats behind one row-by-row interface, and the rows of a question as such a table. */
 #include "campaign/terminal/table.h"
+#include "campaign/terminal/words.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -786,6 +787,8 @@ status table_end(struct table *table, struct error *error) {
     errno = 0;
     (void)fflush(table->out); /* sets the stream's error flag */
     check_output(table);
+    if (table->people && table->out == stdout)
+      words_legend(true);
     if (table->people && !table->broken && table->format != TABLE_BARE)
       tell_left_out(table);
   }

@@ -2,6 +2,7 @@
 #ifndef CLAST_CAMPAIGN_TERMINAL_WORDS_H
 #define CLAST_CAMPAIGN_TERMINAL_WORDS_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 /* A paragraph in lines of at most 100 columns, behind `head` and as far indented. */
@@ -9,7 +10,14 @@ void words_print(FILE *out, const char *head, const char *format, ...) __attribu
 
 /* From now on, all that is printed on stderr has lines of at most 100 columns, or the terminal's if that is narrower.
  * Commands in `...` stay whole, so that they can be copied. So do the place before an error, "FILE:LINE:COL: error: ",
- * which programs read, and the lines of a document below it. stderr has no fileno() from now on. */
-void words_wrap_stderr(void);
+ * which programs read, and the lines of a document below it. stderr has no fileno() from now on.
+ *
+ * apart: a launcher such as mpirun forwards stdout and stderr apart, so that the legend of a table could get into the
+ * middle of it. The legend then goes to stdout (words_legend()). */
+void words_wrap_stderr(bool apart);
+
+/* True, after a table for people on stdout: what is printed on stderr is its legend. False: it is an error or
+ * progress. */
+void words_legend(bool legend);
 
 #endif

@@ -38,7 +38,14 @@ YAML
 printf '# source: made up\nmass (kg), count\n0.5, 3\n2, 1\n' >measured.csv
 expect 0 "$clast" run marked.yaml --store marked.db -j 2
 says "12 of 12 runs" # the progress line
-says "6 runs in doubt (!)"
+says "6 runs warned, 6 of them in doubt in largest_fraction (!)"
+# Conditions that leave the main quantity alone: `clast status` counts the same runs.
+printf '%s\n' 'name: ball' 'scene: basalt-sphere' 'quantity: energy_error' 'seeds: {per_point: 2}' \
+  'set: {fidelity.particles: 300, stop.end_time: 40 us, fidelity.precision: float}' >ball.yaml
+expect 0 "$clast" run ball.yaml --store ball.db -j 2
+says "2 runs warned, 0 of them in doubt in energy_error (!)"
+expect 0 "$clast" status ball.db --json
+prints '"warned": 2'
 sed 's/1 us, 4 us/4 us/; s/per_point: 3/per_point: 12/' marked.yaml >each.yaml # any line of progress is of marked runs
 expect 0 "$clast" run each.yaml --store each.db -j 1
 grep -q 'largest_fraction 0.[0-9]* !' err || fail "the mean of the progress line is not marked"
@@ -271,4 +278,4 @@ for word in $(sed -n 's/^- \*\*\([a-z]*\)\*\* .*/\1/p' out | sort -u); do
   grep -q "^- \*\*$word\*\* " said || fail "explain $word does not tell the condition"
 done
 ok "every condition is explained"
-done_after 119
+done_after 121
