@@ -11,6 +11,7 @@
 #include "engine/outcome.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 struct group { /* the runs of one point */
   char *inputs, label[ASK_POOL_LABEL];
@@ -225,10 +226,52 @@ int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *lef
   return pairs->side[side].excluded;
 }
 
+enum { LOOKED_AT = 300 }; /* points of a side */
+
+/* The k-th input, "path = value", of a text of inputs, and its length; NULL: it has fewer. */
+static const char *input_at(const char *inputs, size_t k, size_t *length) {
+  for (; k > 0 && inputs; k--)
+    inputs = (inputs = strstr(inputs, ", ")) ? inputs + 2 : NULL;
+  const char *end = inputs ? strstr(inputs, ", ") : NULL;
+  *length = end ? (size_t)(end - inputs) : inputs ? strlen(inputs) : 0;
+  return *length ? inputs : NULL;
+}
+
+static bool has_input(const struct side *side, const char *input, size_t length) {
+  const char *at;
+  size_t other;
+  for (size_t i = 0; i < side->group_count && i < LOOKED_AT; i++)
+    for (size_t k = 0; (at = input_at(side->groups[i].inputs, k, &other)); k++)
+      if (other == length && strncmp(at, input, length) == 0)
+        return true;
+  return false;
+}
+
+/* Writes the paths of the inputs of which the sides have no common value; "": each has one. */
+static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) {
+  const struct side *b = &pairs->side[1];
+  size_t length;
+  *text = '\0';
+  for (size_t k = 0; input_at(b->groups[0].inputs, k, &length); k++) {
+    const char *path = input_at(b->groups[0].inputs, k, &length);
+    bool common = false;
+    for (size_t i = 0; i < b->group_count && i < LOOKED_AT && !common; i++) {
+      const char *input = input_at(b->groups[i].inputs, k, &length);
+      common = input && has_input(&pairs->side[0], input, length);
+    }
+    if (!common)
+      text_append(text, size, "%s%.*s", *text ? ", " : "", (int)strcspn(path, " "), path);
+  }
+}
+
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
+  const struct side *a = &pairs->side[0], *b = &pairs->side[1];
+  char apart[200];
   if (pairs->found > 0)
     return STATUS_OK;
+  write_apart(pairs, apart, sizeof apart);
   return status_fail(error, STATUS_USAGE,
-                     "no point of A has the varied inputs of a point of B (%s; %s): name two points, STORE:POINT",
-                     pairs->side[0].groups[0].inputs, pairs->side[1].groups[0].inputs);
+                     "no two points have the same varied inputs%s%s. Name two points: `clast compare %s:%lld %s:%lld`",
+                     *apart ? ": no common value of " : "", apart, a->path, (long long)a->groups[0].point, b->path,
+                     (long long)b->groups[0].point);
 }
