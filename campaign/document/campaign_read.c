@@ -285,6 +285,24 @@ static void check_quantities(document_node *root, struct campaign *campaign) {
         campaign->until_quantity, campaign->until_half_width, campaign->until_half_width, campaign->until_half_width);
 }
 
+/* Reports what a scene refuses at the entry of `set` that its message names. False: there is none. */
+static bool report_set(document_node *set, const struct campaign *campaign, const struct error *error) {
+  for (size_t i = 0; set && i < document_count(set); i++) {
+    const char *key = NULL;
+    char path[320];
+    document_node *node = document_item(set, i, &key);
+    const struct field *row = key ? field_find_in(campaign->scene->kind->inputs, key, campaign->scene->inputs, NULL)
+                                  : NULL;
+    const size_t length = row ? strlen(row->path) : 0;
+    if (!row || strncmp(error->message, row->path, length) != 0 || strncmp(error->message + length, ": ", 2) != 0)
+      continue;
+    snprintf(path, sizeof path, "set.%.300s", key);
+    document_report(node, path, "%s", error->message + length + 2);
+    return true;
+  }
+  return false;
+}
+
 /* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. A
  * point that cannot be run is reported with its line in the file, or at the key that made it. */
 static void check_points(document_node *root, struct campaign *campaign) {
@@ -306,7 +324,7 @@ static void check_points(document_node *root, struct campaign *campaign) {
     else if (campaign->point_lines)
       document_report(design, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
                       error.message);
-    else
+    else if (!report_set(document_key(root, "set"), campaign, &error))
       document_report_error(vary ? vary : root, vary ? "vary" : "scene", &error);
   }
 }
@@ -359,4 +377,6 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   check_quantities(root, campaign);
   if (plain && varied && good && (stored || check_rocks(file ? file : vary, campaign)))
     check_points(root, campaign);
+  else if (good && set && scene_check(campaign->scene, &error) != STATUS_OK) /* not only the errors of `vary` */
+    (void)report_set(set, campaign, &error);
 }

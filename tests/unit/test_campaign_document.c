@@ -243,6 +243,8 @@ static void one_input_is_set_once(void **state) {
 
 static void bad_documents_are_told_what_to_do(void **state) {
   (void)state;
+  bad("name: t\nscene: disc-collision\nset: {impact.speed: 100 m/s}\nvary: {impact.parameter: [0, 0.5]}\n",
+      "t.yaml:3:21: error: set.impact.speed: has no effect|t.yaml:4:26: error: vary.impact.parameter: the dem scene");
   bad(HEAD "seeds: [4]\n", "t.yaml:3:8: error: seeds: expected keys and values below it|per_point");
   bad(HEAD "set: {body.diameter: 2e9 cm}\n", "and at most|cm, got 2e9 cm");
   bad(HEAD "set: {threshold.strain: 5 %%}\n", "two percent signs");
