@@ -122,8 +122,8 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
       enter[k][e] = lanes_all(0.0), leave[k][e] = lanes_all(1.0);
   for (int a = 0; a < 3; a++) {
     for (int b = 0; b < 3; b++) {
-      const lanes_d on_a = out[1][b][a] / (out[1][b][a] - out[1][b][a + 1]);
-      const lanes_d on_b = out[0][a][b] / (out[0][a][b] - out[0][a][b + 1]);
+      const lanes_d on_a = lanes_rounded(out[1][b][a] / (out[1][b][a] - out[1][b][a + 1]));
+      const lanes_d on_b = lanes_rounded(out[0][a][b] / (out[0][a][b] - out[0][a][b + 1]));
       lanes_i start_a = out[1][b][a] > 0.0, end_a = out[1][b][a + 1] > 0.0;
       lanes_d start_b = lanes_mask(out[0][a][b] > 0.0, on_b);
       if (a + b == 2 && a != 1) { /* sides that can lie in one line (a square lattice): counted once, as grain 1's */

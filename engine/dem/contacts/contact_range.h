@@ -152,7 +152,8 @@ LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *
       const lanes_i along = (lanes_abs(from) <= same) & (lanes_abs(to) <= same);
       from = lanes_select(along, lanes_all(own ? -1.0 : 1.0), from);
       to = lanes_select(along, lanes_all(own ? -1.0 : 1.0), to);
-      const lanes_d crossing = from / (from - to); /* infinite where both are outside and equal: nothing is left then */
+      const lanes_d crossing = lanes_rounded(
+          from / (from - to)); /* infinite where both are outside and equal: nothing is left then */
       enter = lanes_max(enter, lanes_mask(from > 0.0, crossing));
       leave = lanes_min(leave, lanes_select(to > 0.0, crossing, lanes_all(1.0)));
     }
@@ -169,10 +170,14 @@ LANES_INLINE double overlap_total(lanes_d value) {
 
 /* Computes the overlap. Moves the rings' origin to the contact. */
 static inline void overlap_rings(struct dem_ring ring[2], struct dem_overlap *out) {
-  double size = 0.0;
+  lanes_d farthest = lanes_all(0.0);
   for (int k = 0; k < 2; k++)
-    for (size_t v = 1; v < ring[k].count; v++)
-      size = fmax(size, fmax(fabs(ring[k].x[v] - ring[k].x[0]), fabs(ring[k].y[v] - ring[k].y[0])));
+    for (size_t v = 0; v < ring[k].count; v += LANES)
+      farthest = lanes_max(farthest, lanes_max(lanes_abs(lanes_load(ring[k].x + v) - ring[k].x[0]),
+                                               lanes_abs(lanes_load(ring[k].y + v) - ring[k].y[0])));
+  double size = 0.0;
+  for (int lane = 0; lane < LANES; lane++)
+    size = farthest[lane] > size ? farthest[lane] : size;
   const double tolerance = 1e-12 * size; /* above the rounding of positions */
   overlap_best_side(ring, out);
   out->apart = out->gap >= -tolerance;
