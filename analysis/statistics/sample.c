@@ -225,6 +225,12 @@ bool sample_may_stop_with(size_t n, double deviation, double half_width, double 
   return t * t * variance <= half_width * half_width * number;
 }
 
+double sample_rule_half_width(size_t n, double deviation, double half_width, double level) {
+  const double number = (double)n, guard = SAMPLE_GUARD * half_width;
+  return n < 2 ? (double)NAN
+               : sample_student(n, level) * sqrt((deviation * deviation + guard * guard / number) / number);
+}
+
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0) {
   if (n < n0 || !(half_width > 0))
     return false;

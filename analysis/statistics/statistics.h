@@ -157,6 +157,8 @@ enum { SAMPLE_FIRST = 30, SAMPLE_BATCH = 10, SAMPLE_GUARD = 20 };
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0);
 /* The same of n values with this standard deviation. */
 bool sample_may_stop_with(size_t n, double deviation, double half_width, double level);
+/* The half width that the rule compares with `half_width`, guard included. NaN: fewer than two values. */
+double sample_rule_half_width(size_t n, double deviation, double half_width, double level);
 /* Are n values enough to stop if all are equal? From 41 on at a level of 0.95. */
 bool sample_could_stop(size_t n, double level);
 

@@ -273,6 +273,14 @@ void design_sobol_free(struct design_sobol *sobol) {
 
 /* ---- The stopping rule: batches of replicates until the interval is narrow enough ---- */
 
+double design_stopping_reached(const struct design_stopping *rule, const double *values, int64_t prefix) {
+  const struct sample_summary mean = sample_summarise((size_t)prefix, values, rule->level);
+  const double one = rule->of_mean ? fabs(mean.mean) : 1;
+  if (rule->fixed || mean.n < 2 || !(one > 0))
+    return NAN;
+  return sample_rule_half_width(mean.n, mean.standard_deviation, one * rule->half_width, rule->level) / one;
+}
+
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix) {
   if (rule->fixed)
     return DESIGN_FIXED;

@@ -129,6 +129,10 @@ struct design_stopping {
 
 enum design_verdict { DESIGN_GROW, DESIGN_INTERVAL_MET, DESIGN_CAP_REACHED, DESIGN_FIXED };
 
+/* The half width that the rule has reached at a prefix, in the unit of rule->half_width. NaN: a fixed number of runs,
+ * or fewer than two values. */
+double design_stopping_reached(const struct design_stopping *rule, const double *values, int64_t prefix);
+
 /* All replicates below *prefix have ended; values[r] is NaN for a failed run. DESIGN_GROW: *prefix is set to the next
  * prefix to complete. Otherwise the point is finished at this prefix. */
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix);

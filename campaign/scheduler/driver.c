@@ -544,6 +544,14 @@ static double time_left(struct driver *driver, double now) {
   return driver->seconds_left;
 }
 
+/* The widest interval of the points that the stopping rule has tested and not ended. 0: none. */
+static double widest_reached(const struct driver *driver) {
+  double widest = 0;
+  for (size_t i = 0; i < driver->point_count; i++)
+    widest = fmax(widest, driver->points[i]->decided ? 0 : driver->points[i]->reached);
+  return widest;
+}
+
 static void tick(void *context, int running, bool last) {
   struct driver *driver = context;
   struct progress *progress = driver->scheduler->options.progress;
@@ -572,6 +580,9 @@ static void tick(void *context, int running, bool last) {
       /* The table has the mean of the runs that count; those of a study differ in their settings. */
       .quantity = last || driver->in_series ? NULL : driver->row->path,
       .mean = mean,
+      .reached = last ? 0 : widest_reached(driver),
+      .asked = driver->campaign->until_half_width,
+      .of_mean = driver->campaign->until_of_value,
       .doubtful = summary->runs_doubtful > 0,
       .part = driver->in_series,
   };

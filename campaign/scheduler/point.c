@@ -19,6 +19,7 @@ struct point *point_create(const struct campaign *campaign, struct scene *scene)
                                          .level = campaign->until_level};
   point->rule.fixed = campaign->per_point > 0;
   point->prefix = point->rule.minimum;
+  point->reached = NAN;
   point->cost.work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
   if (!point_reserve(point, 0))
     memory_refused();
@@ -74,6 +75,7 @@ bool point_judge(struct point *point) {
       point->complete++;
     if (point->complete < point->prefix)
       break;
+    point->reached = design_stopping_reached(&point->rule, point->values, point->prefix);
     point->verdict = design_stopping_judge(&point->rule, point->values, &point->prefix);
     point->decided = point->verdict != DESIGN_GROW;
     changed = true;

@@ -59,6 +59,7 @@ struct point {
   int64_t prefix;      /* replicates that are to be complete */
   int64_t complete;    /* replicates below this are done or failed */
   int64_t wanted_from; /* no replicate below this is in state POINT_WANTED */
+  double reached;      /* half width of the rule when it was last tested; NaN: not yet */
   bool decided;
   enum design_verdict verdict;
   int64_t capacity; /* of the arrays */

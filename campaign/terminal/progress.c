@@ -68,7 +68,7 @@ void progress_duration(double seconds, char *buffer, size_t size) {
 /* The facts, without bar: "120 of 400 runs, 2 failed, 4 running, 3.1 runs/s, 1 min 30 s left, largest_fraction 0.312 +-
  * 0.008 (seeds, 95 %)" */
 static void facts(const struct progress_state *state, char *buffer, size_t size) {
-  char left[32], failed[48] = "", rate[48] = "", time[64] = "", mean[128] = "";
+  char left[32], failed[48] = "", rate[48] = "", time[64] = "", mean[128] = "", rule[64] = "";
   progress_duration(state->seconds_left, left, sizeof left);
   if (state->failed)
     snprintf(failed, sizeof failed, ", %lld failed", (long long)state->failed);
@@ -81,9 +81,13 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     uncertainty_seeds(&state->mean, both);
     snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, state->doubtful ? " !" : "");
   }
-  snprintf(buffer, size, "%lld of %s%lld runs%s%s, %d running%s%s%s", (long long)state->done,
+  const char *percent = state->of_mean ? " %" : "";
+  if (state->reached > 0)
+    snprintf(rule, sizeof rule, ", the rule's interval \xc2\xb1 %.2g%s (asked %.2g%s)",
+             (state->of_mean ? 100 : 1) * state->reached, percent, (state->of_mean ? 100 : 1) * state->asked, percent);
+  snprintf(buffer, size, "%lld of %s%lld runs%s%s, %d running%s%s%s%s", (long long)state->done,
            state->total_is_minimum ? "at least " : "", (long long)state->total, state->part ? " of this round" : "",
-           failed, (int)state->running, rate, time, mean);
+           failed, (int)state->running, rate, time, mean, rule);
 }
 
 static double share_of(const struct progress_state *state) {

@@ -18,8 +18,10 @@ struct progress_state {
   double seconds_left;        /* NaN = not known yet */
   const char *quantity;       /* the main quantity's name */
   struct sample_summary mean; /* of `quantity` over the runs so far; without an interval for runs of several points */
-  bool doubtful;              /* some of these runs are in doubt: "!" behind the mean */
-  bool part;                  /* one of several campaigns, as of a study: plain lines come two seconds apart or later */
+  double reached, asked; /* half width of the stopping rule's interval, the widest of the open points; 0: no rule */
+  bool of_mean;          /* both are shares of the mean */
+  bool doubtful;         /* some of these runs are in doubt: "!" behind the mean */
+  bool part;             /* one of several campaigns, as of a study: plain lines come two seconds apart or later */
 };
 
 enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };

@@ -35,6 +35,19 @@ static void durations(void **state) {
   }
 }
 
+static void a_rule_tells_how_narrow_its_interval_is(void **state) {
+  (void)state;
+  char text[512] = "";
+  FILE *out = fmemopen(text, sizeof text, "w");
+  struct progress *progress = progress_create(out, PROGRESS_BAR, false, 200);
+  struct progress_state now = of(10);
+  now.reached = 0.0584, now.asked = 0.05, now.of_mean = true;
+  progress_update(progress, &now, 0, true);
+  progress_free(progress);
+  fclose(out);
+  assert_non_null(strstr(text, ", the rule's interval ± 5.8 % (asked 5 %)"));
+}
+
 static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
   (void)state;
   char *text = NULL;
@@ -132,6 +145,7 @@ static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(durations),
+                                     cmocka_unit_test(a_rule_tells_how_narrow_its_interval_is),
                                      cmocka_unit_test(a_log_gets_a_line_per_twentieth_or_minute),
                                      cmocka_unit_test(a_log_tells_of_each_part_of_a_study),
                                      cmocka_unit_test(a_bar_is_redrawn_ten_times_a_second_and_fits)};

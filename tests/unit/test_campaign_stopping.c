@@ -41,13 +41,16 @@ static void judges_prefixes(void **state) {
   for (int r = 0; r < 200; r++)
     values[r] += 100;
   rule.half_width = 0.001;
+  assert_true(design_stopping_reached(&rule, values, prefix) > 0.001); /* the rule meets it where it ends a point */
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_GROW);
   rule.half_width = 0.05;
+  assert_true(design_stopping_reached(&rule, values, prefix) <= 0.05);
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_INTERVAL_MET);
   for (int r = 0; r < 40; r++) /* failed runs give no confidence */
     values[r] = NAN;
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_GROW);
   rule.fixed = true;
+  assert_true(isnan(design_stopping_reached(&rule, values, prefix)));
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_FIXED);
 }
 
