@@ -66,14 +66,18 @@ void picture_draw_time(double seconds, char text[32]) {
 }
 
 /* "disc_000003: dem, seed 1, 812 µs". The scene and the number of a snapshot are the file's name; the fields of a
- * stored run are named by a hash. Of a movie: the name of its series; of a sheet, also no time. */
+ * stored run are named by a hash, and the store knows the scene. Of a movie: the name of its series; of a sheet, also
+ * no time. */
 static void name_run(const char *fields, const struct movie *movie, const char *engine, long long seed, double time,
                      char *text, size_t size) {
   const char *path = movie ? movie->series : fields;
   const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
   const size_t length = strcspn(base, ".");
   char shown[32];
-  snprintf(text, size, "%.*s", length < 32 ? (int)length : 0, base);
+  if (length < 32)
+    snprintf(text, size, "%.*s", (int)length, base);
+  else
+    ask_scene_of_fields(fields, text, size);
   if (*engine)
     text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
   picture_draw_time(time, shown);

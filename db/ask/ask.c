@@ -604,6 +604,30 @@ status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, st
   return store_point_shapes(store, run_id, error);
 }
 
+void ask_scene_of_fields(const char *fields, char *name, size_t size) {
+  static const char ending[] = "-fields";
+  OWNED char *path = realpath(fields, NULL);
+  char *base = path ? strrchr(path, '/') : NULL, store_path[LIMITS_PATH];
+  struct error ignored;
+  STORE store = NULL;
+  *name = '\0';
+  if (!base || strspn(base + 1, "0123456789abcdef") != 32 || base - path < (ptrdiff_t)strlen(ending))
+    return;
+  *base = '\0';
+  char *end = base - strlen(ending);
+  if (strcmp(end, ending) != 0)
+    return;
+  snprintf(store_path, sizeof store_path, "%.*s.db", (int)(end - path), path);
+  if (store_open_reader(store_path, &store, &ignored) != STATUS_OK)
+    return;
+  ANSWER answer = answer_to(store, &ignored,
+                            "SELECT scene_name FROM run JOIN point USING (point_id) WHERE identity = x'%.32q'",
+                            base + 1);
+  if (answer_next(&answer))
+    snprintf(name, size, "%s", answer_text(&answer, 0));
+  text_make_plain(name, "");
+}
+
 void ask_run_release(struct ask_run *run) {
   free(run->scene);
   run->scene = NULL;

@@ -289,6 +289,11 @@ struct ask_run {
 status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error);
 void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
 
+/* The name of the scene of the stored run that has these fields, by the store beside their folder: NAME.db beside
+ * NAME-fields/<identity>.h5. The file has no name of its own: runs of one identity have the same fields. "": not known.
+ */
+void ask_scene_of_fields(const char *fields, char *name, size_t size);
+
 /* One row: all columns of the tables run and result_<engine>. */
 struct answer ask_run_results(struct store *store, int64_t run_id, const char *engine, struct error *error);
 

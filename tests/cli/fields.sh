@@ -13,6 +13,11 @@ expect 0 "$clast" check here/kept.db
 expect 0 "$clast" run kept.yaml --store here/kept.db -j 2
 says "0 runs computed"
 gone=$(ls here/kept-fields | head -1)
+# A picture has the scene's name, which the store beside the fields knows.
+title=$(python -c "import h5py, sys; run = h5py.File(sys.argv[1])['run'].attrs; print('dem, seed %d, %.4g ms' % (run['seed'], 1e3 * float(run['time'])))" "here/kept-fields/$gone")
+expect 0 "$clast" picture "here/kept-fields/$gone" named.png
+expect 0 "$clast" picture "here/kept-fields/$gone" by-hand.png --caption "disc-explosion: $title"
+cmp -s named.png by-hand.png || fail "the picture of stored fields has not the scene's name"
 mv "here/kept-fields/$gone" first.h5
 expect 65 "$clast" check here/kept.db
 prints "$gone"
@@ -83,4 +88,4 @@ same "$(number here/kept.db "select count(*) from runs where fields_path like 'k
 sed 's,^name:.*,name: ../kept,; /^store/d' kept.yaml >out.yaml
 expect 65 "$clast" plan out.yaml
 says "slash"
-done_after 38
+done_after 40
