@@ -295,29 +295,30 @@ static void write_points(struct chart *chart, const struct map *map, size_t coun
     write_range(chart, a ? 'y' : 'x', (const double[2]){axis->values[0], axis->values[axis->count - 1]},
                 axis->values[axis->count / 2]);
   }
-  chart_columns(chart, "x y value doubtful decimals kind");
+  chart_columns(chart, "x y value doubtful decimals kind weak");
   for (size_t i = 0; i < count; i++)
-    chart_row(chart, 6,
+    chart_row(chart, 7,
               (double[]){tiles[i].x, tiles[i].y, tiles[i].value, tiles[i].doubtful, tiles[i].decimals,
-                         isfinite(tiles[i].value) ? VALUE : NONE});
+                         isfinite(tiles[i].value) ? VALUE : NONE, tiles[i].weak});
   chart_block_end(chart);
 }
 
-/* Blocks: the tiles (number of column and row from 0, value, doubtful, decimals, kind), the columns' values, the rows'
- * values. */
+/* Blocks: the tiles (number of column and row from 0, value, doubtful, decimals, kind, weak), the columns' values, the
+ * rows' values. */
 static void write_tiles(struct chart *chart, const struct map *map) {
   const size_t wide = map->x.count + 1;
-  chart_columns(chart, "column row value doubtful decimals kind");
+  chart_columns(chart, "column row value doubtful decimals kind weak");
   for (size_t j = 0; j < map->y.count; j++)
     for (size_t i = 0; i < map->columns; i++) {
       const struct picture_tile *tile = map->tile[j * map->columns + i];
       const bool has = tile && isfinite(tile->value);
-      chart_row(chart, 6,
+      chart_row(chart, 7,
                 (double[]){(double)i, (double)j, has ? tile->value : (double)NAN, has && tile->doubtful,
                            has ? tile->decimals : -1,
                            has                        ? VALUE
                            : i % wide == map->x.count ? BETWEEN
-                                                      : NONE});
+                                                      : NONE,
+                           has && tile->weak});
     }
   chart_block_end(chart);
   chart_columns(chart, "column its-value");

@@ -256,6 +256,7 @@ status picture_margins(const char *path, double width, const char *title, size_t
 struct picture_tile {
   double x, y, value;
   bool doubtful; /* a "!" behind the value */
+  bool weak;     /* a "~" behind the value */
   int decimals;  /* of the value; -1: three digits */
   size_t panel;
 };

@@ -18,7 +18,17 @@
 #include "schemas/text.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, MEAN = 7, HALF_WIDTH = 10, LOW = 11, HIGH = 12, RESOLUTION = 14, DOUBTFUL = 17, COLUMNS = 19 };
+enum {
+  VERSION = 1,
+  MEAN = 7,
+  HALF_WIDTH = 10,
+  LOW = 11,
+  HIGH = 12,
+  WEAK = 13,
+  RESOLUTION = 14,
+  DOUBTFUL = 17,
+  COLUMNS = 19
+};
 
 enum {
   MOST_ROWS = 10000,
@@ -38,6 +48,7 @@ struct row {
   double half_width;           /* of this interval, also where a share's interval ends at 0 or 1 */
   double resolution;           /* possible change of the value by finer settings; NaN: unknown */
   bool doubtful;               /* rests on runs in doubt */
+  bool weak;                   /* too few runs for an interval that can be trusted */
   int decimals;                /* of a value without an interval; -1: its leading digits */
 };
 
@@ -119,6 +130,7 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
                             .half_width = answer_real(groups, axes + HALF_WIDTH),
                             .resolution = answer_real(groups, axes + RESOLUTION),
                             .doubtful = answer_integer(groups, axes + DOUBTFUL) > 0,
+                            .weak = answer_integer(groups, axes + WEAK) > 0,
                             .decimals = -1};
     TRY(add_row(quantity, inputs, row, error));
   }
@@ -149,6 +161,7 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
                             .half_width = half_width,
                             .resolution = resolution.half_width,
                             .doubtful = !untold && doubts.doubtful > 0,
+                            .weak = !untold && !isfinite(half_width) && point.n > 1,
                             .decimals = pooled_exponent_decimals(&fit)};
     pooled_exponent_tell(untold, quantity->untold, sizeof quantity->untold);
     TRY(add_row(quantity, point.inputs, row, error));
@@ -484,6 +497,11 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   else
     snprintf(caption, sizeof caption, "No interval: %s; %s",
              quantity->exponent ? "too few runs or fragments" : "one run a point", resolution);
+  bool weak = false;
+  for (size_t i = 0; i < count; i++)
+    weak |= tile[i].weak;
+  if (weak)
+    text_append(caption, sizeof caption, "; ~: weak, too few runs");
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
@@ -545,6 +563,7 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
                                           .y = row->input[1],
                                           .value = row->value,
                                           .doubtful = row->doubtful,
+                                          .weak = row->weak && isfinite(row->value),
                                           .decimals = decimals_of(row, &range),
                                           .panel = panel};
     if (isfinite(row->value) && row->half_width > 0) /* of a share within 0 and 1 the larger distance to an end */

@@ -111,7 +111,7 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
   plot) caption p plot marked.db p.png --x time_step --by strain
     same "$(grep -c ' 1$' p.dat)" 2 "marked means" ;;
   map) caption m map marked.db m.png --x time_step --y strain
-    same "$(awk 'NF == 6 && $4 == 1' m.dat | wc -l)" 2 "marked tiles" ;;
+    same "$(awk 'NF == 7 && $4 == 1' m.dat | wc -l)" 2 "marked tiles" ;;
   converge) study=(converge disc-explosion --set body.diameter='8 cm' --set charge.energy='2 kJ/m' --set stop.least_time='1 ms'
     --knob time_step=4us,1us --seeds 2 --within off --store study.db --quiet)
     marked "2 of 4" "${study[@]}"

@@ -105,20 +105,24 @@ expect 0 "$clast" run three.yaml -j 2 --quiet
 expect 0 "$clast" map three.db three.svg -x strain -y angle --by energy --keep-script
 expect 0 "$clast" stats three.db --by strain,angle,energy --json
 python - <<'PY'
-import json
-means = {tuple(round(r[k], 6) for k in ('threshold_strain', 'threshold_angle', 'charge_energy')): r['largest_fraction_mean']
+import json, re
+means = {tuple(round(r[k], 6) for k in ('threshold_strain', 'threshold_angle', 'charge_energy')): (r['largest_fraction_mean'], r['largest_fraction_weak'])
          for r in json.load(open('out'))}
 strains, angles, energies = (sorted({k[i] for k in means}) for i in range(3))
 rows = [[float(v) for v in l.split()] for l in open('three.dat').read().split('\n\n\n')[0].splitlines() if l[0] != '#']
 assert len(means) == 6 and len(rows) == 10, rows
 kinds = [0, 0, 0]
-for column, row, value, _, _, kind in rows:
+for column, row, value, _, _, kind, weak in rows:
     kinds[int(kind)] += 1
     panel, i = divmod(int(column), 3)
-    mean = means.get((strains[i], angles[int(row)], energies[panel])) if i < 2 else None
+    mean, is_weak = means.get((strains[i], angles[int(row)], energies[panel]), (None, 0)) if i < 2 else (None, 0)
+    assert weak == is_weak, (column, row, weak)
     assert kind == (2 if i == 2 else 1 if mean is None else 0), (column, row, kind)
     assert mean is None or abs(value - mean) < 1e-8, (column, row, value, mean)
 assert kinds == [6, 2, 2], kinds
+weak = sum(w for _, w in means.values())
+assert 0 < weak == len(re.findall(r'>[-0-9.e]+~', open('three.svg').read())), (weak, means)
+assert '; ~: weak, too few runs' in open('three.gp').read()
 PY
 ok "each panel of a map has the means of its value"
 expect 64 "$clast" map three.db m.png -x strain -y angle --by angle
@@ -155,15 +159,15 @@ import json
 rows = {(round(100 * r['threshold_strain'], 6), round(r['threshold_angle'] * 57.29577951308232, 6)): r for r in json.load(open('out')) if r['window'] == 'from_2'}
 columns, rows_of = (sorted({k[i] for k in rows}) for i in range(2))
 drawn = [l.split() for l in open('beta.dat').read().split('\n\n\n')[0].splitlines() if l[0] != '#']
-for column, row, value, doubtful, _, kind in drawn:
+for column, row, value, doubtful, _, kind, weak in drawn:
     r = rows[columns[int(column)], rows_of[int(row)]]
-    assert (kind == '1' and value == 'NaN' and doubtful == '0') if r['beta_masses_untold'] else abs(float(value) - r['beta_masses']) < 1e-8, (r, value)
+    assert (kind == '1' and value == 'NaN' and doubtful == weak == '0') if r['beta_masses_untold'] else abs(float(value) - r['beta_masses']) < 1e-8, (r, value)
     assert r['beta_masses'] is not None and (r['beta_masses_untold'] == 'an interval of ± 2 or wider') == ((r['beta_masses_hw95'] or 0) >= 2), r
 PY
 tr '\n' ' ' <beta.gp | sed "s/'\.\"[^ ]*\"\.'/ /g" >beta.txt
 grep -q '×: not known to a whole number: an interval of ± 2 or wider' beta.txt || fail "no reason in the caption of the map"
 expect 0 "$clast" estimates small.db
-same "$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)" "$(awk 'NF == 6 && $6 == 1' beta.dat | wc -l)" "exponents that neither table nor map has"
+same "$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)" "$(awk 'NF == 7 && $6 == 1' beta.dat | wc -l)" "exponents that neither table nor map has"
 says "beta -: not known to a whole number: an interval of ± 2 or wider"
 expect 64 "$clast" map small.db none.png -x strain -y angle -Q beta
 says "no point has an exponent to draw: not known to a whole number: fewer than 5 fragments"
