@@ -111,6 +111,8 @@ void campaign_drop(struct campaign **campaign); /* for CAMPAIGN */
 /* The axis of an input; NULL: it does not vary. */
 const struct design_axis *campaign_axis(const struct campaign *campaign, const char *path);
 
+/* With `until`: the first prefix that can end a point, were there no maximum. */
+int64_t campaign_replicates_of_rule(const struct campaign *campaign);
 /* Least and greatest number of replicates of a point. Equal for per_point. */
 int64_t campaign_replicates_least(const struct campaign *campaign);
 int64_t campaign_replicates_most(const struct campaign *campaign);

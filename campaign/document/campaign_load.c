@@ -279,12 +279,17 @@ void campaign_drop(struct campaign **campaign) {
   campaign_free(*campaign);
 }
 
+int64_t campaign_replicates_of_rule(const struct campaign *campaign) {
+  int64_t least = campaign->until_minimum;
+  while (least < 1000 && !sample_could_stop((size_t)least, campaign->until_level)) /* 1000: enough at any level */
+    least += campaign->until_batch;
+  return least;
+}
+
 int64_t campaign_replicates_least(const struct campaign *campaign) {
   if (campaign->per_point)
     return campaign->per_point;
-  int64_t least = campaign->until_minimum;
-  while (least < campaign->maximum && !sample_could_stop((size_t)least, campaign->until_level))
-    least += campaign->until_batch;
+  const int64_t least = campaign_replicates_of_rule(campaign);
   return least < campaign->maximum ? least : campaign->maximum;
 }
 

@@ -185,11 +185,15 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   campaign->until_of_value = is_of_value(until, "half_width");
   if (!key_of(until, "half_width"))
     document_report(until, "seeds.until", "'half_width' is missing: give the half width that ends a point");
-  if (campaign->until_minimum > campaign->maximum)
-    document_report(max ? max : until, "seeds.max",
-                    "%lld replicates at most, but the first decision comes after %lld; raise max "
-                    "or lower until.minimum",
-                    (long long)campaign->maximum, (long long)campaign->until_minimum);
+  if (campaign->until_minimum > campaign->maximum ||
+      !sample_could_stop((size_t)campaign->maximum, campaign->until_level)) {
+    const long long most = campaign->maximum, least = campaign_replicates_of_rule(campaign);
+    document_report(
+        max ? max : until, "seeds.max",
+        "seeds.until ends no point before %lld runs, whatever its interval, and max is %lld: give max: %lld "
+        "or more, or per_point: %lld and no until",
+        least, most, least, most);
+  }
 }
 
 /* `accuracy` decides the seeds itself. */

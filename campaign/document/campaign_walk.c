@@ -75,22 +75,6 @@ static void print_line(const char *text, const char *before, FILE *out) {
     words_print(out, before, "%s", text);
 }
 
-/* A rule that no point can meet before seeds.max. */
-static void warn_rule(const struct campaign *campaign, const char *before, FILE *out) {
-  if (campaign->per_point || sample_could_stop((size_t)campaign->maximum, campaign->until_level))
-    return;
-  int64_t least = campaign->until_minimum;
-  while (!sample_could_stop((size_t)least, campaign->until_level))
-    least += campaign->until_batch;
-  char text[LINE];
-  snprintf(
-      text, sizeof text,
-      "seeds.max is %lld: seeds.until ends no point before %lld runs, so that every point takes %lld, whatever its "
-      "interval; raise seeds.max",
-      (long long)campaign->maximum, (long long)least, (long long)campaign->maximum);
-  print_line(text, before, out);
-}
-
 static void print(const struct doubts *doubts, const char *before, bool counted, FILE *out) {
   for (size_t k = 0; k < CONDITION_MOST; k++) {
     if (doubts->count[k] == 0)
@@ -120,7 +104,6 @@ void campaign_warn(const struct campaign *campaign, const char *before, FILE *ou
       if (scene)
         add(&doubts, scene);
     }
-  warn_rule(campaign, before, out);
   print(&doubts, before, doubts.points > 1, out);
 }
 

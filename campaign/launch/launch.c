@@ -126,8 +126,7 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   launch_tell_runs(store, summary->runs_done, summary->runs_reused, summary->cpu_s, wall_s);
   fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " complete", summary->points_done, summary->points);
   if (summary->points_interval_met || summary->points_cap_reached)
-    fprintf(stderr,
-            ": %" PRIu64 " with the interval that was asked for, %" PRIu64 " with seeds.max runs and a wider one",
+    fprintf(stderr, ": %" PRIu64 " met seeds.until, %" PRIu64 " ended at seeds.max before that",
             summary->points_interval_met, summary->points_cap_reached);
   fputc('\n', stderr);
   if (summary->runs_censored)
@@ -149,27 +148,31 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fputs("stopped; the same command goes on\n", stderr);
 }
 
-/* Points that ended at seeds.max without the interval that was asked for. */
-static void warn_too_wide(const struct campaign *campaign, const struct driver_summary *summary) {
-  char asked[FIELD_TEXT_SIZE], width[UNCERTAINTY_TEXT] = "not known", runs[64] = "";
-  const uint64_t wide = summary->points_cap_reached;
-  if (wide == 0)
+/* Points that ended at seeds.max before seeds.until was met. The rule asks for more runs than a narrow interval needs.
+ */
+static void warn_unmet(const struct campaign *campaign, const struct driver_summary *summary) {
+  char asked[FIELD_TEXT_SIZE], width[UNCERTAINTY_TEXT + 96] = "is not known", runs[64] = "more";
+  const uint64_t unmet = summary->points_cap_reached;
+  const double one = campaign->until_of_value ? 100 / fabs(summary->widest_mean) : 1;
+  if (unmet == 0)
     return;
   snprintf(asked, sizeof asked, campaign->until_of_value ? "%g %% of the mean" : "%g",
            campaign->until_half_width * (campaign->until_of_value ? 100 : 1));
   if (isfinite(summary->widest_half_width))
-    snprintf(width, sizeof width, "± %.2g%s",
-             summary->widest_half_width * (campaign->until_of_value ? 100 / fabs(summary->widest_mean) : 1),
-             campaign->until_of_value ? " %" : "");
+    snprintf(width, sizeof width, "is ± %.2g%s%s", summary->widest_half_width * one,
+             campaign->until_of_value ? " %" : "",
+             summary->widest_half_width * one > campaign->until_half_width * (campaign->until_of_value ? 100 : 1)
+                 ? ""
+                 : ": narrow enough, but the rule takes more runs before it trusts one (clast explain seeds.until)");
   if (summary->widest_runs)
-    snprintf(runs, sizeof runs, " and needs about %zu runs", summary->widest_runs);
+    snprintf(runs, sizeof runs, "about %zu", summary->widest_runs);
   words_print(stderr, "",
-              "clast: warning: %" PRIu64 " of %" PRIu64 " points ha%s seeds.max runs (%" PRId64
-              ") and a wider interval "
-              "of %s than seeds.until asks (± %s): the widest, of point %" PRId64 ", is %s%s. Raise seeds.max, or ask "
-              "for less, and the same command goes on",
-              wide, summary->points, wide == 1 ? "s" : "ve", campaign->maximum, campaign->until_quantity, asked,
-              summary->widest_point, width, runs);
+              "clast: warning: %" PRIu64 " of %" PRIu64 " points ended at seeds.max (%" PRId64
+              " runs) before seeds.until was met (%s to ± %s). Point %" PRId64
+              " needs the most runs, %s; its interval %s. Raise seeds.max, or ask for less, and the same command goes "
+              "on",
+              unmet, summary->points, campaign->maximum, campaign->until_quantity, asked, summary->widest_point, runs,
+              width);
 }
 
 /* Means of the campaign's main quantity. */
@@ -233,7 +236,7 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
     print_summary(&summary, store, campaign->quantity, wall_s, code);
   if (!done)
     return code;
-  warn_too_wide(campaign, &summary);
+  warn_unmet(campaign, &summary);
   const status printed = print_answers(store, summary.campaign_id, campaign->quantity, format, quiet,
                                        code ? NULL : error);
   return printed ? printed : code;

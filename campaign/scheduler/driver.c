@@ -621,7 +621,7 @@ static status end(void *context, status code, struct error *error) {
                         : code == STATUS_STOPPED                        ? "stopped"
                                                                         : "failed";
   if (code == STATUS_OK && driver->campaign->per_point == 0)
-    code = store_set_session_too_wide(store, summary->session_id, (int64_t)summary->points_cap_reached, error);
+    code = store_set_session_unmet(store, summary->session_id, (int64_t)summary->points_cap_reached, error);
   const status session = store_end_session(store, summary->session_id, outcome, code == STATUS_OK ? error : NULL);
   return code != STATUS_OK ? code : session;
 }

@@ -64,7 +64,7 @@ static const struct {
     {"failed_attempts", ZERO},
     {"without_result", ZERO},
     {"warned", ZERO},
-    {"too_wide", ZERO},
+    {"rule_unmet", ZERO},
     {"last_started", RARE},
     {"last_ended", RARE},
     {"command", RARE},

@@ -44,7 +44,7 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
 
 /* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, excluded,
  * failed_attempts, without_result, cpu_time (s), start and end of its last session, warned runs that count, the
- * command of that session, which names its file, and points that ended at seeds.max with too wide an interval.
+ * command of that session, which names its file, and points that ended at seeds.max before seeds.until was met.
  * `writing`: a process is writing the store (store_is_being_written). `earlier`: also campaigns whose points a later
  * one of their name has; without it, the rounds of one search or study are one row, "1 .. 29". */
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error);

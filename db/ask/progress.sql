@@ -12,7 +12,7 @@ given_up AS (SELECT campaign_id, count(DISTINCT attempt.identity) AS without_res
   FROM campaign_point JOIN attempt USING (point_id)
   WHERE NOT EXISTS (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY campaign_id),
 last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome,
-  facts ->> '$.points_too_wide' AS too_wide,
+  facts ->> '$.points_unmet' AS rule_unmet,
   (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) AS command FROM session GROUP BY campaign_id),
 planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,
   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),
@@ -31,7 +31,7 @@ each AS (SELECT campaign_id AS campaign, name, document LIKE '# Written by clast
   coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus, coalesce(excluded, 0) AS excluded,
   coalesce(failed_attempts, 0) AS failed_attempts, coalesce(without_result, 0) AS without_result,
   coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended,
-  coalesce(warned, 0) AS warned, last.command AS command, coalesce(last.too_wide, 0) AS too_wide
+  coalesce(warned, 0) AS warned, last.command AS command, coalesce(last.rule_unmet, 0) AS rule_unmet
 FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign_id)
   LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id)
   LEFT JOIN planned USING (campaign_id) LEFT JOIN filled USING (campaign_id)
@@ -42,5 +42,5 @@ SELECT iif(count(*) = 1, campaign, NULL) AS campaign, name, state, -- of several
   sum(points) AS points, sum(runs) AS runs, sum(counted) AS counted, sum(censored) AS censored, sum(failed) AS failed,
   sum(surplus) AS surplus, sum(excluded) AS excluded, sum(failed_attempts) AS failed_attempts,
   sum(without_result) AS without_result, sum(cpu_time) AS cpu_time, min(last_started) AS last_started,
-  max(last_ended) AS last_ended, sum(warned) AS warned, max(command) AS command, sum(too_wide) AS too_wide
+  max(last_ended) AS last_ended, sum(warned) AS warned, max(command) AS command, sum(rule_unmet) AS rule_unmet
 FROM each GROUP BY iif(is_round AND NOT :earlier, name || ' ' || state, campaign) ORDER BY min(each.campaign)

@@ -767,11 +767,11 @@ status store_set_session(struct store *store, int64_t session_id, int64_t campai
   return store_end(store, result, 1, error);
 }
 
-status store_set_session_too_wide(struct store *store, int64_t session_id, int64_t points, struct error *error) {
+status store_set_session_unmet(struct store *store, int64_t session_id, int64_t points, struct error *error) {
   TRY(store_begin(store, error));
   const status result =
       sql_executef(store->db, "ending a session", error,
-                   "UPDATE session SET facts = json_set(facts, '$.points_too_wide', %lld) WHERE session_id = %lld",
+                   "UPDATE session SET facts = json_set(facts, '$.points_unmet', %lld) WHERE session_id = %lld",
                    (long long)points, (long long)session_id);
   return store_end(store, result, 1, error);
 }

@@ -51,9 +51,9 @@ void store_drop(struct store **store); /* for STORE */
 status store_begin_session(struct store *store, const char *facts_json, int64_t *session_id, struct error *error);
 /* Notes which campaign the session computes. */
 status store_set_session(struct store *store, int64_t session_id, int64_t campaign_id, struct error *error);
-/* Notes how many points of the campaign ended at seeds.max with a wider interval than seeds.until asks (key
- * points_too_wide of `facts`). */
-status store_set_session_too_wide(struct store *store, int64_t session_id, int64_t points, struct error *error);
+/* Notes how many points of the campaign ended at seeds.max before seeds.until was met (key
+ * points_unmet of `facts`). */
+status store_set_session_unmet(struct store *store, int64_t session_id, int64_t points, struct error *error);
 status store_end_session(struct store *store, int64_t session_id, const char *outcome, struct error *error);
 status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
                           int64_t *campaign_id, struct error *error);

@@ -111,7 +111,7 @@ expect 0 "$clast" retry one.db
 says "no run was given up"
 expect 0 "$clast" replay one.db 1
 # A rule takes it for a run without a value.
-sed "s/seeds: .*/seeds: {until: {quantity: largest_fraction, half_width: 0.2}, max: 40}/" one.yaml >until.yaml
+sed "s/seeds: .*/seeds: {until: {quantity: largest_fraction, half_width: 0.2}, max: 60}/" one.yaml >until.yaml
 "$clast" run until.yaml --store until.db -j 2 --quiet >out 2>err || fail "the rule"
 "$clast" exclude until.db 1 --reason "bad" 2>err || fail "exclude"
 expect 0 "$clast" run until.yaml --store until.db -j 2 --quiet

@@ -294,7 +294,10 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "seeds: {max: 100}\n", "only `until` has a maximum");
   bad(HEAD "seeds: {until: {quantity: largest_fraction}}\n", "'half_width' is missing");
   bad(HEAD "seeds: {until: {half_width: 0.1}, max: 20}\n",
-      "20 replicates at most, but the first decision comes after 30");
+      "seeds.until ends no point before 50 runs, whatever its interval, and max is 20: give max: 50 or more, or "
+      "per_point: 20 and no until");
+  bad(HEAD "seeds: {until: {half_width: 0.1, minimum: 10}, max: 40}\n", "no point before 50 runs");
+  campaign_free(good(HEAD "seeds: {until: {half_width: 0.1, minimum: 2, batch: 3}, max: 41}\n")); /* 20 t(40) = 40.4 */
   bad(HEAD "seeds: {until: {half_width: 8, quantity: largest_fraction}}\n", "8 per cent of the mean is written '8 %'");
   campaign_free(good(HEAD "seeds: {until: {half_width: 8, quantity: fragment_count}}\n"));
   bad(HEAD "seeds: {until: {half_width: 0.1, quantity: largest_fractoin}}\n", "did you mean 'largest_fraction'?");
