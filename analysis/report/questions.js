@@ -78,7 +78,7 @@ export const values = (quantity) => `SELECT results_version, ${name(quantity)} A
 export const runs = (columns, doubtful) => `SELECT run_id, point_id, replicate, CAST(seed AS TEXT) AS seed, state, counts, surplus, engine, warnings, ${doubtful} AS doubtful
   ${columns.map((column) => `, ${name(column)}`).join('')} FROM runs WHERE point_id = :point ORDER BY replicate, seed`;
 export const run = 'SELECT * FROM runs WHERE run_id = :run';
-export const pictures = 'SELECT run_id, quantile, png FROM picture WHERE point_id = :point ORDER BY quantile';
+export const pictures = 'SELECT run_id, quantile, png FROM picture WHERE point_id = :point ORDER BY quantile NULLS LAST, run_id';
 export const pictureOfRun = 'SELECT run_id, quantile, png FROM picture WHERE run_id = :run';
 export const differences = 'SELECT first_point, point_id, pairs, difference, hw95 FROM difference WHERE quantity = :quantity';
 export const keptRuns = 'SELECT count(*) AS n FROM runs';

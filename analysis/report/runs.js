@@ -15,8 +15,9 @@ function columnsOf(from) {
 
 function pictureOf(row) {
   const place = row.quantile === 0 ? 'least' : row.quantile === 1 ? 'largest' : 'median';
+  const of = row.quantile === null ? '' : `: ${place} ${label(state.stores, store().facts.pictures_by ?? '')} of its point`;
   return element('figure', {}, element('img', {src: URL.createObjectURL(new Blob([row.png], {type: 'image/png'})), alt: `The broken body of run ${row.run_id}`}),
-    element('figcaption', {}, `Run ${row.run_id}: ${place} ${label(state.stores, store().facts.pictures_by ?? '')} of its point`));
+    element('figcaption', {}, `Run ${row.run_id}${of}`));
 }
 
 function showRun(id) {
@@ -26,7 +27,8 @@ function showRun(id) {
   const pairs = Object.entries(row).filter(([, value]) => value !== null && value !== '' && !(value instanceof Uint8Array))
     .map(([column, value]) => [label(state.stores, column), number(inUnit(state.stores, column, value), 7)]);
   fill(document.getElementById('run'), element('h3', {tabindex: -1, id: 'run-title'}, `Run ${id}`),
-    picture ? pictureOf(picture) : element('p', {}, 'Its picture is not on this page. These commands compute the run again, bit by bit, and draw it:'),
+    picture ? pictureOf(picture) : element('p', {}, 'Its picture is not on this page.'),
+    element('p', {}, 'These commands compute the run again, bit by bit, and draw it:'),
     element('p', {}, command(`clast replay ${file} ${id} --fields run${id}.h5`)),
     element('p', {}, command(`clast picture run${id}.h5 run${id}.png`)),
     element('details', {}, element('summary', {}, 'All that this page knows of it'), list(pairs)));

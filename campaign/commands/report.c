@@ -30,7 +30,8 @@ struct making {
   const struct report_choice *choice;
   struct store *store;
   struct ask_page *page;
-  size_t picture_bytes, not_drawn;
+  size_t tried, picture_bytes, left_out, not_drawn; /* of pictures */
+  bool full;                                        /* the next picture would be too much */
 };
 
 static status add_facts(struct making *making, const char *name, struct error *error) {
@@ -53,6 +54,12 @@ static status add_facts(struct making *making, const char *name, struct error *e
   for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
     TRY(ask_page_fact(making->page, facts[i][0], facts[i][1], error));
   return STATUS_OK;
+}
+
+static status add_count(struct making *making, const char *name, size_t count, struct error *error) {
+  char text[32];
+  snprintf(text, sizeof text, "%zu", count);
+  return ask_page_fact(making->page, name, text, error);
 }
 
 static status add_label(struct making *making, const char *column, struct error *error) {
@@ -86,8 +93,11 @@ static status add_picture(struct making *making, const struct answer *kept, stru
   OWNED unsigned char *png = NULL;
   size_t size = 0;
   char path[LIMITS_PATH];
-  if (making->picture_bytes >= PICTURE_BYTES)
+  if (making->full || making->tried == PICTURES) {
+    making->left_out++;
     return STATUS_OK;
+  }
+  making->tried++;
   snprintf(path, sizeof path, "%s.%ld.png", making->choice->output, (long)getpid());
   OWNED char *fields = ask_run_fields(kept, 3);
   if (!fields)
@@ -99,26 +109,27 @@ static status add_picture(struct making *making, const struct answer *kept, stru
   }
   code = file_read(path, "picture", &png, &size, error);
   unlink(path);
-  if (code || making->picture_bytes + size > PICTURE_BYTES)
+  making->full = making->picture_bytes + size > PICTURE_BYTES;
+  making->left_out += making->full;
+  if (code || making->full)
     return code;
   making->picture_bytes += size;
   return ask_page_picture(making->page, kept, png, size, error);
 }
 
 static status fill_page(struct making *making, const char *name, struct page_data *data, struct error *error) {
-  char not_drawn[32];
   TRY(add_facts(making, name, error));
   ANSWER columns = ask_page_columns(making->page, error);
   while (answer_next(&columns))
     TRY(add_label(making, answer_text(&columns, 0), error));
   TRY(answer_end(&columns));
   TRY(add_differences(making, name, error));
-  ANSWER kept = ask_page_kept(making->store, PICTURES, error);
+  ANSWER kept = ask_page_kept(making->store, error);
   while (answer_next(&kept))
     TRY(add_picture(making, &kept, error));
   TRY(answer_end(&kept));
-  snprintf(not_drawn, sizeof not_drawn, "%zu", making->not_drawn);
-  TRY(ask_page_fact(making->page, "pictures_not_drawn", not_drawn, error));
+  TRY(add_count(making, "pictures_left_out", making->left_out, error));
+  TRY(add_count(making, "pictures_not_drawn", making->not_drawn, error));
   return ask_page_file(making->page, &data->bytes, &data->size, error);
 }
 

@@ -286,20 +286,26 @@ static status per_metre(struct store *store, char *unit, size_t size, struct err
   return STATUS_OK;
 }
 
+/* Units by column, of the one or of all. The views say the unit of a result that several engines have; a column with
+ * different units in different tables has none. */
+static struct answer ask_units(struct store *store, const char *column, struct error *error) {
+  return answer_to(store, error,
+                   "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' AND table_name NOT LIKE "
+                   "'result\\_%%' ESCAPE '\\' AND column_name = ifnull(%Q, column_name) GROUP BY column_name HAVING "
+                   "count(DISTINCT unit) = 1",
+                   column);
+}
+
 status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error) {
-  ANSWER answer = answer_to(store, error, "SELECT min(unit) FROM column_doc WHERE column_name = %Q AND unit <> '1'",
-                            column);
-  snprintf(unit, size, "%s", answer_next(&answer) ? answer_text(&answer, 0) : "");
+  ANSWER answer = ask_units(store, column, error);
+  snprintf(unit, size, "%s", answer_next(&answer) ? answer_text(&answer, 1) : "");
   TRY(answer_end(&answer));
   return per_metre(store, unit, size, error);
 }
 
 status ask_columns_units(struct store *store, struct ask_column **columns, size_t *count, struct error *error) {
   size_t room = 0;
-  ANSWER
-  answer = answer_to(store, error,
-                     "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' AND table_name NOT LIKE "
-                     "'result\\_%%' ESCAPE '\\' GROUP BY column_name HAVING count(DISTINCT unit) = 1");
+  ANSWER answer = ask_units(store, NULL, error);
   *columns = NULL;
   for (*count = 0; answer_next(&answer);) {
     TRY(grow_or_fail(columns, &room, *count + 1, sizeof **columns, "the units of the columns", error));

@@ -622,10 +622,10 @@ status ask_page_label(struct ask_page *page, const char *column, const char *lab
 /* All columns of the page that have no label yet, one row each: inputs that were varied, and results. */
 struct answer ask_page_columns(struct ask_page *page, struct error *error);
 
-/* The runs nearest to the quantiles 0, 0.5 and 1 of every point by the main quantity (0: the smallest value), if their
- * fields are kept; at most `most` runs, the medians of all points first. A row: run, point, quantile, and the file
- * (ask_run_fields). */
-struct answer ask_page_kept(struct store *store, size_t most, struct error *error);
+/* The runs whose fields are kept: the medians of all points first, then the smallest and the largest values, then the
+ * others. A row: run, point, quantile of the point's main quantity (0: the smallest value; of the others NULL), and the
+ * file (ask_run_fields). */
+struct answer ask_page_kept(struct store *store, struct error *error);
 /* Adds the picture of the current row of ask_page_kept. */
 status ask_page_picture(struct ask_page *page, const struct answer *kept, const void *png, size_t size,
                         struct error *error);

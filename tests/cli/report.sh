@@ -27,7 +27,7 @@ expect 66 alone/clast report small.db
 says "apt-get install nodejs npm"
 
 # The goodness of fits is that of clast exponents.
-tiny fits
+tiny fits "keep: {fields: first 1}"
 sed -i 's/per_point: 3/per_point: 20/; $a quantity: fragment_count' fits.yaml
 expect 0 "$clast" run fits.yaml -j 2 --quiet
 expect 0 "$clast" report fits.db
@@ -43,6 +43,22 @@ table = {row['point_id']: row['p'] for row in json.load(open('out')) if row['p']
 assert table and {point: p for point, p in page.items() if p is not None} == table, (page, table)
 PY
 ok "the goodness of fits"
+
+# Every kept field file is a picture of its run, also of a run that is no median. Units are those of the engine's results.
+python - <<'PY'
+import base64, gzip, re, sqlite3
+(text,) = re.findall(r'class="store">([^<]*)<', open('fits.html').read())
+page = sqlite3.connect(':memory:')
+page.deserialize(gzip.decompress(base64.b64decode(text)))
+store = sqlite3.connect('file:fits.db?mode=ro', uri=True)
+kept = sorted(store.execute('select run_id, point_id from run where fields_path is not null'))
+drawn = page.execute('select run_id, point_id, quantile from picture order by 1').fetchall()
+assert [row[:2] for row in drawn] == kept and len(kept) == 4 and None in (row[2] for row in drawn), (drawn, kept)
+units = store.execute("select column_name, unit from column_doc where table_name = 'runs' and unit like 'J%'").fetchall()
+labels = dict(page.execute('select column_name, unit from label'))
+assert labels['energy_input'] == 'J/m' and {c: labels[c] for c, _ in units if c in labels} == {c: u for c, u in units if c in labels}, labels
+PY
+ok "pictures of all kept fields, units of results"
 
 # The exponents of the page, and of a whole store on it, are those of the table for people, with its reasons.
 for store in fits small; do
@@ -195,7 +211,7 @@ JS
   expect 0 "$clast" report three.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 40
+  done_after 41
 else
-  done_after 33
+  done_after 34
 fi
