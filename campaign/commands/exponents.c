@@ -21,8 +21,8 @@ static double with_two_digits(double number) {
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
  * Points without estimates have no row. *flat becomes true if beta is 1 or less: numbers above a mass are no power law
  * then. */
-static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pool *pool, char *untold,
-                         bool *flat, struct error *error) {
+static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pools *pools,
+                         const struct ask_pool *pool, char *untold, bool *flat, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent fit;
   struct pooled_goodness goodness;
@@ -33,7 +33,7 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
   TRY(pooled_exponent(runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &fit, error));
   TRY(pooled_goodness(runs, lower, draws, &goodness, error));
   TRY(pooled_rivals(runs, lower, &rivals, error));
-  table_integer(table, pool->data.point_id);
+  print_pool_cells(table, pools, pool);
   table_reals(table, 2, (const double[]){lower, pool->data.complete_mass});
   table_integer(table, (int64_t)runs->count);
   table_integer(table, fit.fit.n);
@@ -63,8 +63,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   int dimensions;
   TRY(ask_pool_dimensions(store, &dimensions, error));
+  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){.inputs = true}, NULL, error);
   TABLE table = table_new(line->format, stdout);
-  table_column(table, "point_id", NULL);
+  print_pool_columns(table, &pools);
   table_column(table, "from", ask_pool_mass_unit(dimensions));
   table_column(table, OUTCOME_NAME(complete_mass), ask_pool_mass_unit(dimensions));
   table_rare(table);
@@ -77,10 +78,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   struct ask_doubts doubts = {0};
   char untold[UNTOLD] = "";
   bool flat = false;
-  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), pool, untold, &flat, error));
+    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), &pools, pool, untold, &flat, error));
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));

@@ -203,11 +203,11 @@ static status print_answers(const char *path, int64_t campaign, const char *quan
   snprintf(number, sizeof number, "%" PRId64, campaign);
   TRY(store_open_reader(path, &store, error));
   TRY(ask_points_count(store, &choice, &points, error));
+  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error)); /* what is told below tables is of it, too */
   if (!table_for_people(format))
     return print_estimates(store, &choice, format, !quiet, error);
   if (quiet && format == TABLE_TEXT)
     format = TABLE_BARE;
-  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error)); /* what is told below tables is of it, too */
   if (points > MANY_POINTS)
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);

@@ -297,6 +297,7 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   if (parse.shared.allow_commands)
     engine_allow_commands();
   line->choice = parse.shared.choice;
+  line->choice.axes = command->chooses_runs;
   line->choice.campaigns_alone = command->chooses_runs && !command->lists_campaigns && !parse.shared.studies;
   if (parse.shared.json && parse.shared.csv)
     return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");

@@ -24,12 +24,13 @@ enum {
   WIDTH = 100,            /* of a table for people, where stdout is no terminal */
   GAP = 2,                /* between columns */
   TEXT_LEAST = 24,        /* a column of texts is not made narrower than this, */
-  PATH_MOST = 40,         /* nor than a path in it of up to this width */
+  NAME_LEAST = 16,        /* one of an input, such as a material, not than this, */
+  PATH_MOST = 40,         /* and neither than a path in it of up to this width */
 };
 
 enum role {
   PLAIN,
-  KEY,   /* tells rows apart: never left out, and repeated in each part of a table in parts */
+  KEY,   /* tells rows apart: repeated in each part of a table in parts, and left out only by leave_out_inputs() */
   MEAN,  /* somebody asked for it: never left out, but it may stand in a further part */
   RARE,  /* left out without --all */
   SAME,  /* the same, if all rows have the same cell; the note has the cell */
@@ -88,6 +89,7 @@ struct column {
   size_t value;  /* of an ERROR: the column of its value */
   size_t narrow, path;
   size_t width;              /* in the table for people, characters */
+  bool input, of_studies;    /* an input of the points, made by table_key(); that only studies vary */
   bool text;                 /* aligned left */
   bool marked;               /* a number has a mark behind it; the others leave its room free */
   struct sample_range range; /* of an ERROR: the values that its value can have */
@@ -229,6 +231,8 @@ void table_key(struct table *table, const struct ask_column *input) {
   free(column->head);
   column->head = heading(table, *input->word && !table->asked ? input->word : input->name, column->unit);
   column->role = KEY;
+  column->input = true;
+  column->of_studies = input->of_studies;
   column->factor = input->factor;
 }
 
@@ -343,7 +347,8 @@ static struct column *widest(const struct table *table, bool texts) {
   size_t most = 0;
   for (size_t c = 0; c < table->column_count; c++) {
     struct column *column = &table->columns[c];
-    const size_t least = !texts ? column->narrow : column->path > TEXT_LEAST ? column->path : TEXT_LEAST;
+    const size_t text = column->input ? NAME_LEAST : TEXT_LEAST;
+    const size_t least = !texts ? column->narrow : column->path > text ? column->path : text;
     if (column->left_out || (texts && !column->text) || column->width <= least + most)
       continue;
     best = column;
@@ -371,6 +376,23 @@ static bool is_quiet(const struct table *table, size_t c) {
   return (role == SAME || role == ZERO) && table->rows < BATCH_ROWS && table->kept_count > 0;
 }
 
+/* Where a table does not fit, inputs that only studies vary leave two thirds of its width to the results: the last ones
+ * are left out, because the number of the point or run tells its rows apart. */
+static void leave_out_inputs(struct table *table, size_t room) {
+  size_t width = 0;
+  bool numbered = false;
+  for (size_t c = 0; c < table->column_count; c++) {
+    const struct column *column = &table->columns[c];
+    width += column->input ? column->width + GAP : 0;
+    numbered |= strcmp(column->name, "point_id") == 0 || strcmp(column->name, "run_id") == 0;
+  }
+  for (size_t c = table->column_count; numbered && c-- > 0 && width > room / 3 && total_width(table) > room;) {
+    struct column *column = &table->columns[c];
+    column->left_out |= column->of_studies;
+    width -= column->of_studies ? column->width + GAP : 0;
+  }
+}
+
 static void lay_out(struct table *table) {
   const size_t room = room_for(table->out);
   table->laid_out = true;
@@ -383,6 +405,8 @@ static void lay_out(struct table *table) {
     measure(table, c);
   }
   make_narrow(table, room);
+  if (table->format != TABLE_ALL)
+    leave_out_inputs(table, room);
   if (table->format != TABLE_ALL)
     for (size_t c = table->column_count; c-- > 1 && total_width(table) > room;)
       table->columns[c].left_out |= table->columns[c].role != KEY && table->columns[c].role != MEAN;

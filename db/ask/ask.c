@@ -113,6 +113,13 @@ struct answer ask_campaign_documents(struct store *store, struct error *error) {
   return answer_to(store, error, "SELECT campaign_id, name, document FROM campaign ORDER BY campaign_id");
 }
 
+/* SQL that is true where `path` belongs to something with a name, such as a material, and the name differs between the
+ * points `a` and `b`: the value follows from it. */
+#define FOLLOWS_A_NAME(path, a, b)                                                                                     \
+  "EXISTS (SELECT 1 FROM point_input n LEFT JOIN point_input m ON m.point_id = " b " AND m.path = n.path WHERE "       \
+  "n.point_id = " a " AND n.path LIKE '%%.name' AND n.path <> " path " AND substr(" path ", 1, length(n.path) - 4) = " \
+  "substr(n.path, 1, length(n.path) - 4) AND m.value IS NOT n.value)"
+
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error) {
   return answer_to(
       store, error,
@@ -124,7 +131,8 @@ struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, 
       " SELECT mine.path, theirs.value, (SELECT scene FROM point WHERE point_id = other.first), max(other.campaign_id) "
       "FROM other JOIN point_input mine ON mine.point_id = %lld"
       " LEFT JOIN point_input theirs ON theirs.point_id = other.first AND theirs.path = mine.path WHERE theirs.value IS"
-      " NOT mine.value AND mine.path NOT IN (SELECT path FROM axis) GROUP BY mine.path ORDER BY mine.path",
+      " NOT mine.value AND mine.path NOT IN (SELECT path FROM axis) AND NOT " FOLLOWS_A_NAME(
+          "mine.path", "mine.point_id", "other.first") " GROUP BY mine.path ORDER BY mine.path",
       (long long)campaign, (long long)campaign, (long long)point, (long long)point);
 }
 
@@ -237,13 +245,15 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
                         struct error *error) {
   const char *word[LIMITS_AXES_OF_STORE];
   ANSWER answer = answer_to(
-      store, error, "SELECT column_name, unit, %s, path FROM axis ORDER BY %spath", written ? "written_unit" : "NULL",
-      written ? "ifnull((SELECT min(campaign_id * 1000 + key) FROM campaign, json_each(iif(json_valid(plan), plan, "
-                "'{}'), '$.axes') AS j WHERE j.value = axis.path), 1e18), "
-              : "");
+      store, error,
+      "SELECT column_name, unit, %s, path, place >= 2e18 FROM (SELECT *, ifnull((SELECT min(iif(%s, 2e18, 0) + "
+      "campaign_id * 1000 + key) FROM campaign, json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j WHERE "
+      "j.value = axis.path), 1e18) AS place FROM axis) ORDER BY %spath",
+      written ? "written_unit" : "NULL", CAMPAIGN_IS_ROUND, written ? "place, " : "");
   for (*count = 0; *count < most && answer_next(&answer); ++*count) {
     read_column(&answer, &axes[*count]);
     snprintf(axes[*count].word, sizeof axes->word, "%s", answer_text(&answer, 3));
+    axes[*count].of_studies = answer_integer(&answer, 4) != 0;
   }
   for (size_t i = 0; i < *count; i++)
     word[i] = short_word(axes, *count, i);

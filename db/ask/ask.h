@@ -20,6 +20,10 @@ struct ask_choice {
    * lie where the search looked, so they are no sample. Holds without `point` and `campaign`, in a store with others.
    */
   bool campaigns_alone;
+  /* Table axis has only the inputs that tell the chosen points apart: those that a person's campaign (or the chosen
+   * one) varies, and those that differ between points with runs and do not follow from a varied name, as a density does
+   * from its material. Any other choice does the same. */
+  bool axes;
 };
 /* For a reader. Points without a chosen run are no points. An empty choice: all. STATUS_USAGE: unknown point or
  * campaign; the condition is no valid SQL. */
@@ -152,10 +156,11 @@ struct ask_column {
   char word[128]; /* of a varied input: the shortest end of its path that no other has: "m", "target.radius"; else "" */
   char unit[64];  /* "" when the store does not give it; "1" for a pure number */
   double factor;  /* SI value of one of this unit; values of the store are SI */
+  bool of_studies; /* a varied input that only studies and searches vary */
 };
 
 /* The columns of the varied inputs, at most `most` (LIMITS_AXES_OF_STORE) of them. `written`: in the units and the
- * order that the campaign uses; else in SI units, in the order of their paths. */
+ * order that the campaign uses, those of studies last; else in SI units, in the order of their paths. */
 status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
                         struct error *error);
 /* One column by name, with the campaign's unit if it is a varied input, else with its unit in the store. */

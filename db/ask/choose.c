@@ -19,7 +19,8 @@ static status forget(sqlite3 *db, struct error *error) {
     TRY(sql_executef(db, doing, error, "DROP VIEW IF EXISTS temp.%s; DROP TABLE IF EXISTS temp.chosen_%s", of_points[i],
                      of_points[i])); /* also chosen_point */
   return sql_execute(db,
-                     "DROP VIEW IF EXISTS temp.run; DROP VIEW IF EXISTS temp.campaign; DROP TABLE IF EXISTS "
+                     "DROP VIEW IF EXISTS temp.axis; DROP TABLE IF EXISTS temp.chosen_axis; DROP VIEW IF EXISTS "
+                     "temp.run; DROP VIEW IF EXISTS temp.campaign; DROP TABLE IF EXISTS "
                      "temp.chosen_campaign; DROP TABLE IF EXISTS temp.chosen_run",
                      doing, error);
 }
@@ -86,6 +87,30 @@ static status make_views(sqlite3 *db, bool summed, struct error *error) {
   return STATUS_OK;
 }
 
+/* The inputs that tables show and charts choose from. `choice` has its views already. */
+static status choose_axes(sqlite3 *db, const struct ask_choice *choice, struct error *error) {
+  return sql_executef(
+      db, doing, error,
+      "CREATE TEMP TABLE chosen_axis AS WITH"
+      " varied AS (SELECT j.value AS path FROM campaign, json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j"
+      "   WHERE %d OR NOT %s),"
+      " counted AS MATERIALIZED (SELECT point_id FROM point p WHERE EXISTS (SELECT 1 FROM run WHERE run.point_id = "
+      "   p.point_id)),"
+      " given AS MATERIALIZED (SELECT path, point_id, (SELECT quote(value) FROM main.point_input i WHERE i.point_id ="
+      "   c.point_id AND i.path = axis.path) AS value FROM main.axis, counted c WHERE path NOT IN (SELECT path FROM "
+      "   varied) OR path LIKE '%%.name'),"
+      " other AS (SELECT path FROM given WHERE path NOT IN (SELECT path FROM varied) GROUP BY path"
+      "   HAVING count(DISTINCT ifnull(value, '')) > 1),"
+      " follows AS (SELECT path, name FROM other JOIN (SELECT DISTINCT path AS name FROM given WHERE path LIKE "
+      "   '%%.name') ON path <> name AND substr(path, 1, length(name) - 4) = substr(name, 1, length(name) - 4)"
+      "   WHERE NOT EXISTS (SELECT 1 FROM given v JOIN given n USING (point_id) WHERE v.path = other.path AND n.path ="
+      "   name GROUP BY n.value HAVING count(DISTINCT ifnull(v.value, '')) > 1))"
+      " SELECT path FROM main.axis WHERE path IN (SELECT path FROM varied) OR (path IN (SELECT path FROM other) AND "
+      "path NOT IN (SELECT path FROM follows));"
+      "CREATE TEMP VIEW axis AS SELECT * FROM main.axis WHERE path IN (SELECT path FROM temp.chosen_axis)",
+      choice->campaign != NULL, CAMPAIGN_IS_ROUND);
+}
+
 static status choose(struct store *store, const struct ask_choice *choice, struct error *error) {
   TRY(sql_executef(
       store->db, doing, error,
@@ -103,7 +128,8 @@ static status choose(struct store *store, const struct ask_choice *choice, struc
                     "CREATE TEMP VIEW run AS SELECT * FROM main.run WHERE point_id IN (SELECT point_id FROM "
                     "temp.chosen_point)",
                     doing, error));
-  return make_views(store->db, choice->where, error);
+  TRY(make_views(store->db, choice->where, error));
+  return choose_axes(store->db, choice, error);
 }
 
 status ask_choose(struct store *store, const struct ask_choice *choice, struct error *error) {
@@ -113,7 +139,8 @@ status ask_choose(struct store *store, const struct ask_choice *choice, struct e
   store->left_out = 0;
   if (code == STATUS_OK)
     code = ask_register_functions(store, error);
-  if (code == STATUS_OK && (choice->point || choice->campaign || choice->where || choice->campaigns_alone))
+  if (code == STATUS_OK &&
+      (choice->point || choice->campaign || choice->where || choice->campaigns_alone || choice->axes))
     code = choose(store, choice, error);
   store->chosen[0] = '\0';
   if (choice->campaign)

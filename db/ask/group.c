@@ -133,12 +133,13 @@ static status judge(const struct choice *choice, const char *what, const char *n
                      choice->known[0] ? choice->known : "none");
 }
 
-/* An input of the points that is no axis: says why. */
+/* An input of the points with runs that is no axis: says why. */
 static status judge_input(struct store *store, const char *name, const struct choice *choice, struct error *error) {
   char path[NAME] = "";
   ANSWER found = answer_to(store, error,
                            "SELECT path, count(DISTINCT value) "
-                           "FROM point_input WHERE path = %Q OR path LIKE '%%.' || %Q GROUP BY path LIMIT 1",
+                           "FROM point p JOIN point_input USING (point_id) WHERE (path = %Q OR path LIKE '%%.' || %Q) "
+                           "AND EXISTS (SELECT 1 FROM run WHERE run.point_id = p.point_id) GROUP BY path LIMIT 1",
                            name, name);
   const bool is_input = answer_next(&found);
   if (is_input)
@@ -148,7 +149,8 @@ static status judge_input(struct store *store, const char *name, const struct ch
   if (!is_input)
     return STATUS_OK;
   if (!differs)
-    return status_fail(error, STATUS_USAGE, "%s has one value in all points. Known are: %s.", path,
+    return status_fail(error, STATUS_USAGE, "%s has one value in all points%s. Known are: %s.", path,
+                       store->left_out ? " (--studies: also in those of studies and searches)" : "",
                        choice->known[0] ? choice->known : "none");
   return status_fail(error, STATUS_USAGE, "%s is no axis of this store: no campaign varies it. Known are: %s.", path,
                      choice->known[0] ? choice->known : "none");
@@ -318,7 +320,7 @@ static const char axes_sql[] = "SELECT column_name, path FROM axis ORDER BY path
 static const char quantities_sql[] =
     "SELECT c.name FROM pragma_table_info('runs') c WHERE c.type IN ('REAL', 'INTEGER') AND c.name NOT IN "
     "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
-    "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)";
+    "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM main.axis)";
 
 struct answer ask_group_quantities(struct store *store, struct error *error) {
   return answer_to(store, error, "%s", quantities_sql);

@@ -42,6 +42,54 @@ expect 0 "$clast" run many.yaml -j 1
 says "not shown (--all): "; says "beta LSQ"
 for word in strain angle friction energy bonded time; do sed '/^ *1 /q' out | grep -q "$word" || fail "the table lacks $word"; done
 
+# A study or a search in the store of a campaign changes no table of it: what only the study varied is no input of its
+# points. Neither is what follows from a material.
+one charged 'vary: {charge.energy: [500 J/m, 2000 J/m]}' '' 2
+study=(-Q largest_fraction --within off --seeds 2 --max-seeds 2 -j 2)
+expect 0 "$clast" run charged.yaml -j 2
+for of in estimates scatter spectrum exponents; do "$clast" $of charged.db >charged-$of 2>/dev/null; done
+expect 0 "$clast" converge charged.yaml --knob time_step,integrator,stop --knob grains=1.2cm,1.069cm "${study[@]}" -q
+for of in estimates scatter spectrum exponents; do
+  expect 0 "$clast" $of charged.db
+  same "$(head -1 out | tr -s ' ')" "$(head -1 charged-$of | tr -s ' ')" "columns of $of"
+done
+expect 0 "$clast" run charged.yaml
+same "$(head -1 out | tr -s ' ')" "$(head -1 charged-estimates | tr -s ' ')" "columns of run"
+for format in csv json; do "$clast" run charged.yaml --quiet --$format | grep -q spacing && fail "the study's input in $format"; done
+expect 0 "$clast" plot charged.db charged.png
+says "varied: --x energy"
+expect 64 "$clast" map charged.db charged.png
+says "only energy was varied"
+expect 64 "$clast" stats charged.db --by spacing
+says "grain.spacing has one value in all points (--studies: also in those of studies and searches). Known are: charge.energy."
+expect 0 "$clast" stats charged.db --by spacing --studies
+
+"$clast" materials granite | sed 's/^material: granite/material: own/; s/density: .*/density: 2600 kg\/m^3/' >own.yaml
+cat >own-rocks.yaml <<'YAML'
+name: own-rocks
+scene: basalt-sphere
+set: {particles: 200, stop.end_time: 5 us}
+vary: {target.material: [./own.yaml, basalt]}
+seeds: {per_point: 2}
+YAML
+expect 0 "$clast" run own-rocks.yaml -j 2 --quiet
+head -1 out | tr -s ' ' >rocks-before
+expect 0 "$clast" converge own-rocks.yaml --knob particles=100,200 "${study[@]}" -q
+expect 0 "$clast" run own-rocks.yaml --quiet
+same "$(head -1 out | tr -s ' ')" "$(cat rocks-before)" "columns of rocks"
+expect 0 "$clast" estimates own-rocks.db --studies
+same "$(head -1 out | tr -s ' ' | cut -d' ' -f1-5)" "point material particles runs M_1/M" "inputs of rocks and their study"
+
+# A store that only a study wrote shows results, and the inputs for which there is room.
+expect 0 "$clast" converge charged.yaml --knob time_step,integrator,stop --knob grains=1.2cm,1.069cm "${study[@]}" -q --store studied.db
+for of in estimates scatter spectrum exponents; do
+  expect 0 "$clast" $of studied.db
+  [ "$(LC_ALL=C.UTF-8 awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le 100 ] || fail "wider than 100 columns"
+  sed -n 1,2p out | grep -qE "M_1/M|value|fragments" || fail "no result"
+done
+expect 0 "$clast" estimates studied.db
+says "not shown (--all): "; says "end_time [s]"
+
 # SQL that asks for too much is a fault of the SQL.
 for sql in 'select randomblob(1e18)' 'select zeroblob(2000000000)' "select printf('%.*c', 2000000000, 'x')" "select format('%2000000000d', 1)" "select replace(hex(zeroblob(1e7)), '0', hex(zeroblob(100)))" "select 1 from run limit 'a'"; do
   expect 64 "$clast" query formula.db "$sql"
@@ -187,4 +235,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 53
+done_after 81
