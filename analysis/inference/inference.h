@@ -27,7 +27,6 @@ struct seed_scatter_runs {
   const double *x; /* points x inputs, of the order of 1 */
   /* points x replicates; NaN: no run. With shared seeds, column r has the same seed at all points */
   const double *values;
-  bool counts; /* they are whole numbers, or grow with them: few of them are often equal */
 };
 
 struct seed_scatter {
@@ -39,9 +38,8 @@ struct seed_scatter {
   size_t freedom;  /* degrees of freedom of all values above: runs minus points */
 };
 
-/* Fits the variance: a line through ln(s^2) of the points, whose expectation and variance under chi-square are known
- * (digamma, trigamma), with a prior of width 1 on each slope; of counts the line of greatest likelihood instead.
- * shared_seeds false: `shared` is 0. STATUS_CONTENT: no point has two or more runs. */
+/* Fits the variance: the line of greatest likelihood of the points' s^2 under chi-square, with a prior of width 1 on
+ * each slope. shared_seeds false: `shared` is 0. STATUS_CONTENT: no point has two or more runs. */
 status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
                         struct error *error);
 double seed_scatter_variance(const struct seed_scatter *scatter, const double *x);
@@ -177,7 +175,6 @@ struct surfaces_runs {
   const double *z;      /* points x inputs, normal coordinates */
   const double *values; /* outputs x points x replicates */
   bool shared_seeds;    /* replicate r has the same seed at all points */
-  const bool *counts;   /* of each output: is it a count? NULL: none is */
 };
 
 struct surfaces {

@@ -144,54 +144,89 @@ static status make_grid(const struct posterior_model *model, struct posterior *o
 }
 
 /* A sample of the posterior by walkers that move along lines through each other: the stretch move of Goodman & Weare
- * (2010, doi 10.2140/camcos.2010.5.65), whose cost does not depend on how stretched the posterior is. The first half of
- * the moves is discarded. */
-enum { SAMPLE_NODES = 4000, WALKERS = 80, SWEEPS = 200, KEPT = SAMPLE_NODES / WALKERS, EVERY = 2 };
+ * (2010, doi 10.2140/camcos.2010.5.65), whose cost does not depend on how stretched the posterior is.
+ *
+ * The walkers begin at draws from the prior and go to the posterior in stages (Del Moral, Doucet & Jasra 2006,
+ * doi 10.1111/j.1467-9868.2006.00553.x): at each the likelihood has a higher power, up to 1. The next power leaves half
+ * of the walkers effective; they are drawn anew by their weights and then move. A walker that began far from the data,
+ * at a lower maximum, is so replaced: the moves alone do not bring it over. */
+enum { SAMPLE_NODES = 4000, WALKERS = 80, HALF = WALKERS / 2, KEPT = SAMPLE_NODES / WALKERS, EVERY = 2 };
+enum { STAGE_SWEEPS = 10, LAST_SWEEPS = 100 };
 static const double STRETCH = 2; /* a, as in the paper */
 
-static double density(const struct posterior_model *model, const double *z) {
-  double sum = likelihood(model, z);
-  for (size_t i = 0; i < model->inputs; i++)
+struct walkers {
+  double z[WALKERS * INFERENCE_INPUTS], likelihood[WALKERS]; /* its logarithm */
+  double power;                                              /* of the likelihood, 0 to 1 */
+  uint64_t seed, sweeps;                                     /* sweeps so far */
+};
+
+static double log_prior(size_t inputs, const double *z) {
+  double sum = 0;
+  for (size_t i = 0; i < inputs; i++)
     sum -= z[i] * z[i] / 2;
   return sum;
 }
 
 /* One sweep: each half moves along lines through walkers of the other half. */
-static void sweep(const struct posterior_model *model, uint64_t seed, uint64_t number, double *z, double *log_density) {
+static void sweep(const struct posterior_model *model, struct walkers *all) {
   const size_t p = model->inputs;
   double moved[INFERENCE_INPUTS];
   for (size_t w = 0; w < WALKERS; w++) {
     uint64_t bits[4];
-    random_bits(seed, RANDOM_INFERENCE, UINT64_C(1) << 62 | number << 16 | w, 0, bits);
-    const bool upper = w >= WALKERS / 2;
-    const size_t other = (size_t)(random_uniform(bits[0]) * (WALKERS / 2)) + (upper ? 0 : WALKERS / 2);
+    random_bits(all->seed, RANDOM_INFERENCE, UINT64_C(1) << 62 | all->sweeps << 16 | w, 0, bits);
+    const size_t other = (size_t)(random_uniform(bits[0]) * HALF) + (w >= HALF ? 0 : HALF);
     const double root = 1 / sqrt(STRETCH) + random_uniform(bits[1]) * (sqrt(STRETCH) - 1 / sqrt(STRETCH));
     const double stretch = root * root; /* of density 1 / sqrt(stretch) between 1/a and a */
+    double *const z = all->z + w * p;
     for (size_t i = 0; i < p; i++)
-      moved[i] = z[other * p + i] + stretch * (z[w * p + i] - z[other * p + i]);
-    const double there = density(model, moved);
-    if (log(random_uniform(bits[2])) < (double)(p - 1) * log(stretch) + there - log_density[w]) {
-      memcpy(z + w * p, moved, p * sizeof *moved);
-      log_density[w] = there;
+      moved[i] = all->z[other * p + i] + stretch * (z[i] - all->z[other * p + i]);
+    const double there = likelihood(model, moved);
+    const double gain = all->power * (there - all->likelihood[w]) + log_prior(p, moved) - log_prior(p, z);
+    if (log(random_uniform(bits[2])) < (double)(p - 1) * log(stretch) + gain) {
+      memcpy(z, moved, p * sizeof *moved);
+      all->likelihood[w] = there;
     }
   }
+  all->sweeps++;
 }
 
-/* Each walker begins at the best of ten draws from the prior. */
-static void begin_walkers(const struct posterior_model *model, uint64_t seed, double *z, double *log_density) {
-  const size_t p = model->inputs;
-  double tried[INFERENCE_INPUTS];
+/* Weights of the walkers if the power rises by `more`. Returns the effective number of walkers. */
+static double weigh(const struct walkers *all, double more, double weight[WALKERS]) {
+  double most = -HUGE_VAL, sum = 0, squares = 0;
+  for (size_t w = 0; w < WALKERS; w++)
+    most = fmax(most, all->likelihood[w]);
   for (size_t w = 0; w < WALKERS; w++) {
-    log_density[w] = -HUGE_VAL;
-    for (size_t t = 0; t < 10; t++) {
-      for (size_t i = 0; i < p; i++)
-        tried[i] = gsl_cdf_ugaussian_Pinv(
-            fmax(random_draw(seed, RANDOM_INFERENCE, UINT64_C(1) << 63 | w << 16 | t, i), 0x1p-54));
-      const double there = density(model, tried);
-      if (t > 0 && !(there > log_density[w]))
-        continue;
-      log_density[w] = there;
-      memcpy(z + w * p, tried, p * sizeof *tried);
+    weight[w] = exp(more * (all->likelihood[w] - most));
+    sum += weight[w];
+    squares += weight[w] * weight[w];
+  }
+  for (size_t w = 0; w < WALKERS; w++)
+    weight[w] /= sum;
+  return sum * sum / squares;
+}
+
+/* Raises the power and draws the walkers anew, by evenly spaced shares of the weight; copies of one walker go to either
+ * half. */
+static void next_stage(const struct posterior_model *model, struct walkers *all) {
+  const size_t p = model->inputs;
+  const struct walkers before = *all;
+  double weight[WALKERS], low = 0, high = 1 - all->power, below = 0;
+  if (weigh(all, high, weight) < HALF)
+    for (int i = 0; i < 60; i++) {
+      const double middle = (low + high) / 2;
+      if (weigh(all, middle, weight) < HALF)
+        high = middle;
+      else
+        low = middle;
+    }
+  weigh(all, high, weight);
+  all->power = high == 1 - all->power ? 1 : all->power + high;
+  for (size_t from = 0, drawn = 0; from < WALKERS && drawn < WALKERS; from++) {
+    below += weight[from];
+    for (; drawn < WALKERS && (((double)drawn + 0.5) / WALKERS < below || from == WALKERS - 1); drawn++) {
+      const size_t to = drawn / 2 + (drawn % 2) * HALF;
+      memcpy(all->z + to * p, before.z + from * p, p * sizeof *all->z);
+      all->likelihood[to] = before.likelihood[from];
     }
   }
 }
@@ -199,15 +234,24 @@ static void begin_walkers(const struct posterior_model *model, uint64_t seed, do
 /* Fills z, SAMPLE_NODES x inputs. The same seed gives the same sample. */
 static void fill_sample(const struct posterior_model *model, uint64_t seed, double *z) {
   const size_t p = model->inputs;
-  double walkers[WALKERS * INFERENCE_INPUTS], log_density[WALKERS];
-  uint64_t number = 0;
-  begin_walkers(model, seed, walkers, log_density);
-  for (; number < SWEEPS; number++)
-    sweep(model, seed, number, walkers, log_density);
+  struct walkers all = {.seed = seed};
+  for (size_t w = 0; w < WALKERS; w++) {
+    for (size_t i = 0; i < p; i++)
+      all.z[w * p + i] = gsl_cdf_ugaussian_Pinv(
+          fmax(random_draw(seed, RANDOM_INFERENCE, UINT64_C(1) << 63 | w << 16, i), 0x1p-54));
+    all.likelihood[w] = likelihood(model, all.z + w * p);
+  }
+  while (all.power < 1) {
+    next_stage(model, &all);
+    for (int i = 0; i < STAGE_SWEEPS; i++)
+      sweep(model, &all);
+  }
+  for (int i = 0; i < LAST_SWEEPS; i++)
+    sweep(model, &all);
   for (size_t kept = 0; kept < KEPT; kept++) {
-    for (int i = 0; i < EVERY; i++, number++)
-      sweep(model, seed, number, walkers, log_density);
-    memcpy(z + kept * WALKERS * p, walkers, WALKERS * p * sizeof *walkers);
+    for (int i = 0; i < EVERY; i++)
+      sweep(model, &all);
+    memcpy(z + kept * WALKERS * p, all.z, WALKERS * p * sizeof *z);
   }
 }
 

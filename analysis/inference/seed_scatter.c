@@ -1,7 +1,6 @@
 /* Variance over seeds, and the covariance of means with shared seeds. */
 #include "analysis/inference/inference.h"
 
-#include <gsl/gsl_sf_psi.h>
 #include <math.h>
 #include <string.h>
 
@@ -16,42 +15,42 @@ static struct sample_moments moments_of(const struct seed_scatter_runs *runs, si
   return m;
 }
 
-/* One weighted least squares of ln(s^2) - its bias on 1 and x, with a prior on the slopes. Of counts instead a step of
- * Fisher's scoring towards the greatest likelihood of the s^2, from the line in `out`: few equal counts have an s^2 of
- * 0, which is no news there, and which the logarithm would take for certain. */
-static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct seed_scatter *out) {
+/* A step of Fisher's scoring towards the greatest likelihood of the s^2 of all points under chi-square, from the line
+ * in `out`: a weighted least squares of (s^2 - found) / found on 1 and x, with a prior on the slopes. Runs that are
+ * equal, by chance or since nothing breaks there, show that the variance is small; the logarithm of s^2 would take them
+ * for certain and draw the line to 0. */
+static void improve_line(const struct seed_scatter_runs *runs, double pooled, struct seed_scatter *out) {
   enum { MOST = INFERENCE_INPUTS + 1 };
-  static const double SHARE = 0.5; /* of a step of the scoring */
+  static const double SHARE = 0.5; /* of a step of the scoring, which may overshoot */
   const size_t n = runs->inputs + 1;
-  double normal[MOST * MOST] = {0}, right[MOST] = {0}, row[MOST];
+  double normal[MOST * MOST] = {0}, right[MOST] = {0}, change[MOST] = {0}, row[MOST], most = 1;
   for (size_t i = 0; i < runs->points; i++) {
     const struct sample_moments m = moments_of(runs, i);
     if (m.n < 2)
       continue;
-    const double half = (double)(m.n - 1) / 2;
-    /* Runs that are equal by chance show that the variance is small, not that it is 0. */
-    const double variance = fmax(m.squares / (2 * half), 1e-4 * pooled);
+    const double half = (double)(m.n - 1) / 2; /* the weight, too */
     const double found = seed_scatter_variance(out, runs->x + i * runs->inputs);
-    const double y = runs->counts ? log(found / pooled) + m.squares / (2 * half) / found - 1
-                                  : log(variance / pooled) - gsl_sf_psi(half) + log(half);
-    const double weight = runs->counts ? half : 1 / gsl_sf_psi_1(half);
+    const double y = log(found / pooled) + m.squares / (2 * half) / found - 1;
     row[0] = 1;
     memcpy(row + 1, runs->x + i * runs->inputs, runs->inputs * sizeof *row);
     for (size_t a = 0; a < n; a++) {
-      right[a] += weight * row[a] * y;
+      right[a] += half * row[a] * y;
       for (size_t b = 0; b < n; b++)
-        normal[a * n + b] += weight * row[a] * row[b];
+        normal[a * n + b] += half * row[a] * row[b];
     }
   }
   for (size_t a = 1; a < n; a++)
     normal[a * n + a] += 1;
   if (!covariance_factor(n, normal))
-    return; /* the pooled variance stays */
+    return; /* the line stays */
   covariance_solve(n, normal, right, right);
-  const double share = runs->counts ? SHARE : 1;
-  out->constant += share * (log(pooled) + right[0] - out->constant);
-  for (size_t a = 0; a < runs->inputs; a++)
-    out->slope[a] += share * (right[a + 1] - out->slope[a]);
+  for (size_t a = 0; a < n; a++) {
+    change[a] = right[a] - (a == 0 ? out->constant - log(pooled) : out->slope[a - 1]);
+    most = fmax(most, fabs(change[a]));
+  }
+  out->constant += SHARE * change[0] / most;
+  for (size_t a = 1; a < n; a++)
+    out->slope[a - 1] += SHARE * change[a] / most;
 }
 
 /* Correlation from sums over points, seed by seed: their variance over seeds shows how strongly a seed moves all points
@@ -116,8 +115,8 @@ status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, 
                        "give more seeds (seeds.per_point), or another quantity");
   pooled /= (double)out->freedom;
   out->constant = pooled > 0 ? log(pooled) : -700; /* no seed changes this output */
-  for (int pass = 0; pooled > 0 && pass < (runs->counts ? PASSES : 1); pass++)
-    fit_line(runs, pooled, out);
+  for (int pass = 0; pooled > 0 && pass < PASSES; pass++)
+    improve_line(runs, pooled, out);
   if (pooled > 0 && shared_seeds)
     out->shared = shared_correlation(runs, out);
   if (pooled > 0)

@@ -64,8 +64,7 @@ static status part_make(const struct surfaces_runs *runs, const bool *bounded, s
     memcpy(part->values + n * runs->replicates, values_of(runs, output, i), runs->replicates * sizeof(double));
     part->mean[n++] = surfaces_mean(runs, output, i);
   }
-  part->runs = (struct seed_scatter_runs){.counts = runs->counts && runs->counts[output],
-                                          .points = n,
+  part->runs = (struct seed_scatter_runs){.points = n,
                                           .inputs = runs->inputs,
                                           .replicates = runs->replicates,
                                           .x = part->x,

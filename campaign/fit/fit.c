@@ -162,8 +162,7 @@ struct surfaces_runs fit_runs(const struct fit *fit, double *packed) {
   for (size_t i = 0; i < fit->points; i++)
     for (size_t k = 0; k < d; k++)
       memcpy(packed + (k * fit->points + i) * r, fit->values + (i * d + k) * r, r * sizeof *packed);
-  return (struct surfaces_runs){.counts = fit->counts,
-                                .points = fit->points,
+  return (struct surfaces_runs){.points = fit->points,
                                 .inputs = fit->inputs,
                                 .outputs = d,
                                 .replicates = r,

@@ -22,7 +22,6 @@ enum { CASE_MEMBERS = 24, CASE_ROUNDS = 8, CASE_REPLICATES = 4, CASE_POINTS = CA
 typedef double (*case_model)(const double *u, size_t k, uint64_t seed);
 
 struct case_fit {
-  const bool *counts; /* of surfaces_runs */
   size_t inputs, outputs, points;
   double z[CASE_POINTS * INFERENCE_INPUTS];
   double values[INFERENCE_OUTPUTS * CASE_POINTS * CASE_REPLICATES]; /* packed: outputs x points x replicates */
@@ -41,8 +40,7 @@ static inline struct surfaces_runs case_runs(const struct case_fit *fit, double 
   for (size_t k = 0; k < fit->outputs; k++)
     memcpy(packed + k * fit->points * CASE_REPLICATES, fit->values + k * CASE_POINTS * CASE_REPLICATES,
            fit->points * CASE_REPLICATES * sizeof *packed);
-  return (struct surfaces_runs){.counts = fit->counts,
-                                .points = fit->points,
+  return (struct surfaces_runs){.points = fit->points,
                                 .inputs = fit->inputs,
                                 .outputs = fit->outputs,
                                 .replicates = CASE_REPLICATES,

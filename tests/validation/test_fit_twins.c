@@ -45,7 +45,7 @@ struct count {
   double width[INFERENCE_INPUTS];
 };
 
-static void run_twins(size_t inputs, size_t outputs, case_model model, const bool *counts, size_t number,
+static void run_twins(size_t inputs, size_t outputs, case_model model, bool counts, size_t number,
                       struct count *count) {
   static struct case_fit fit;
   const bool bounded[INFERENCE_INPUTS] = {true, true, true, true};
@@ -62,7 +62,7 @@ static void run_twins(size_t inputs, size_t outputs, case_model model, const boo
                                          .error = error_of,
                                          .specimens = 1};
     }
-    fit = (struct case_fit){.inputs = inputs, .outputs = outputs, .counts = counts};
+    fit = (struct case_fit){.inputs = inputs, .outputs = outputs};
     assert_int_equal(case_solve(&fit, model, data, bounded, c + 1, &error), STATUS_OK);
     for (size_t i = 0; i < inputs; i++) {
       const double low = gsl_cdf_ugaussian_P(posterior_quantile(&fit.posterior, i, 0.05));
@@ -98,22 +98,21 @@ static void judge(const char *name, size_t inputs, const struct count *count) {
 static void two_inputs(void **state) {
   (void)state;
   struct count count;
-  run_twins(2, 2, body, NULL, cases(), &count);
+  run_twins(2, 2, body, false, cases(), &count);
   judge("two inputs, two summaries", 2, &count);
 }
 
 static void one_input(void **state) {
   (void)state;
   struct count count;
-  run_twins(1, 1, skewed, NULL, cases(), &count);
+  run_twins(1, 1, skewed, false, cases(), &count);
   judge("one input, skewed scatter", 1, &count);
 }
 
 static void few_fragments(void **state) {
   (void)state;
-  const bool counts[2] = {false, true};
   struct count count;
-  run_twins(2, 2, few, counts, cases(), &count);
+  run_twins(2, 2, few, true, cases(), &count);
   judge("two inputs, a share and a small number", 2, &count);
 }
 
