@@ -30,6 +30,7 @@ static const double LOG_FROM = 20; /* an axis is logarithmic if its ends differ 
 static const double none_of_seven[7] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
 
 static void write_curve(struct chart *chart, const struct picture_curve *curve) {
+  const struct sample_range any = sample_range(NULL), *range = curve->range ? curve->range : &any;
   chart_columns(chart, "x mean low high thin_low thin_high doubtful");
   for (size_t i = 0; i < curve->count; i++) {
     const struct picture_mean *m = &curve->mean[i];
@@ -37,12 +38,12 @@ static void write_curve(struct chart *chart, const struct picture_curve *curve) 
     const double low = bar ? m->low : m->y, high = bar ? m->high : m->y;
     double row[7] = {m->x, m->y, NAN, NAN, NAN, NAN, m->doubtful};
     if (bar) {
-      row[2] = low;
-      row[3] = high;
+      row[2] = fmax(low, range->least);
+      row[3] = fmin(high, range->most);
     }
     if (m->resolution > 0) {
-      row[4] = low - m->resolution;
-      row[5] = high + m->resolution;
+      row[4] = fmax(low - m->resolution, range->least);
+      row[5] = fmin(high + m->resolution, range->most);
     }
     chart_row(chart, 7, row);
     if (curve->scattered)

@@ -213,10 +213,11 @@ struct picture_mean {
 struct picture_curve {
   const char *label; /* may be NULL */
   size_t count;
-  const struct picture_mean *mean; /* x ascending */
-  bool scattered;                  /* marks without a line: between them other inputs change, too */
-  bool band;                       /* a smooth line in a band from low to high, without marks */
-  size_t places;                   /* of the first curve, > 0: bars; the x axis has these words at 1, 2, ... */
+  const struct picture_mean *mean;  /* x ascending */
+  bool scattered;                   /* marks without a line: between them other inputs change, too */
+  bool band;                        /* a smooth line in a band from low to high, without marks */
+  const struct sample_range *range; /* of the values: bars and bands end there; NULL: any values */
+  size_t places;                    /* of the first curve, > 0: bars; the x axis has these words at 1, 2, ... */
   const char *const *place;
 };
 /* Draws one to eight curves: marks with error bars joined by lines, or lines in bands. x is logarithmic when all its

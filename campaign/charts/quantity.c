@@ -421,6 +421,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   TRY(charts_axis(store, quantity->name, y, error));
   label_lines(plot, by);
   struct picture_curve curves[MOST_LINES] = {0};
+  const struct sample_range range = views_range(quantity->name);
   for (size_t i = 0; i < plot->count; i++) {
     curves[i].label = *plot->line[i].label ? plot->line[i].label : NULL;
     curves[i].count = plot->line[i].count;
@@ -428,6 +429,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     curves[i].place = plot->place;
     curves[i].mean = plot->line[i].means;
     curves[i].scattered = *quantity->changing;
+    curves[i].range = &range;
   }
   charts_label(quantity->name, name);
   charts_label(quantity->column[0], over);

@@ -59,9 +59,11 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
   const double runs = (double)pool->data.runs.count;
   label_fit(curve, headline.fit.beta, headline.interval.half_width);
   const bool sizes = curve->form.size.density > 0;
+  /* Windows that begin at the same mass differ in the last bits: they do not round to different sides of a half. */
+  const double from = headline.fit.lower * (1 + 1e-9);
   text_append(curve->fit_label, sizeof curve->fit_label,
-              "; %zu fragments from %.2g %s on, the largest of each run left out", headline.fit.n,
-              sizes ? spectrum_size_of(&curve->form.size, headline.fit.lower) : headline.fit.lower,
+              "; %zu fragments from %.3g %s on, the largest of each run left out", headline.fit.n,
+              sizes ? spectrum_size_of(&curve->form.size, from) : from,
               sizes ? "m" : ask_pool_mass_unit(pool->data.dimensions));
   curve->fit = (struct picture_fit){NULL,
                                     headline.fit.beta,

@@ -626,5 +626,8 @@ status study_print_picture(const struct study *study, bool of_errors, const char
                            : "mean over seeds with its 95 % interval");
   charts_doubts(&sum, caption, sizeof caption);
   const struct picture_words words = {title, caption, x, y};
+  const struct sample_range range = views_range(study->quantity[0].column);
+  for (size_t i = 0; i < drawing->count; i++)
+    drawing->curves[i].range = of_errors ? NULL : &range;
   return picture_curves(&page, &words, drawing->count, drawing->curves, error);
 }

@@ -56,8 +56,9 @@ done
 expect 0 "$clast" run charged.yaml
 same "$(head -1 out | tr -s ' ')" "$(head -1 charged-estimates | tr -s ' ')" "columns of run"
 for format in csv json; do "$clast" run charged.yaml --quiet --$format | grep -q spacing && fail "the study's input in $format"; done
-expect 0 "$clast" plot charged.db charged.png
+expect 0 "$clast" plot charged.db charged.svg --keep-script
 says "varied: --x energy"
+awk '/^[0-9]/ { n++; if ($6 != "NaN" && ($6 > 1 || $5 < 0)) bad = 1 } END { exit n != 2 || bad }' charged.dat || fail "bars of a share leave 0 to 1: $(cat charged.dat)"
 expect 64 "$clast" map charged.db charged.png
 says "only energy was varied"
 expect 64 "$clast" stats charged.db --by spacing

@@ -316,7 +316,8 @@ static void curves_are_drawn(void **state) {
   const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1, 0, false},
                                      {10, NAN, 0, 0, NAN, false},
                                      {100, 0.125, NAN, NAN, NAN, false}};
-  const struct picture_curve both[] = {{.label = "high", .count = 3, .mean = high},
+  const struct sample_range share = {0, 1, true};
+  const struct picture_curve both[] = {{.label = "high", .count = 3, .mean = high, .range = &share},
                                        {.label = "low", .count = 3, .mean = low}};
   assert_int_equal(curves("curves.png", 2, both), STATUS_OK);
   double dark, coloured;
@@ -325,8 +326,8 @@ static void curves_are_drawn(void **state) {
   assert_true(width == 900 && coloured > 0.005);
   assert_string_equal(text_of(at("curves.dat")),
                       "# x mean low high thin_low thin_high doubtful\n"
-                      "1 0.9 0.85 0.95 0.75 1.05 0\n"
-                      "10 0.9 0.85 0.95 NaN NaN 1\n100 0.9 NaN NaN 0.7 1.1 0\n\n\n"
+                      "1 0.9 0.85 0.95 0.75 1 0\n"
+                      "10 0.9 0.85 0.95 NaN NaN 1\n100 0.9 NaN NaN 0.7 1 0\n\n\n"
                       "# x mean low high thin_low thin_high doubtful\n1 0.1 NaN NaN NaN NaN 0\n"
                       "10 NaN NaN NaN NaN NaN 0\n100 0.125 NaN NaN NaN NaN 0\n\n\n");
   const char *script = text_of(at("curves.gp"));
