@@ -190,15 +190,16 @@ static void print_change(const struct knob *knob, const struct study_found *foun
           knob->inputs[0].path);
 }
 
-/* How many seeds show no difference between the levels of the knob; 0: some do, or it has no two levels. */
+/* How many seeds show no difference between the levels of the knob, which adds nothing; 0: some do, it has no two
+ * levels, or it adds something. */
 static int64_t equal_seeds(const struct study_found *found) {
   int64_t levels = 0, seeds = 0;
   for (size_t l = 0; l < found->count; l++) {
     const struct convergence_row *row = &found->rows[l];
     if (row->n == 0)
       continue;
-    if (row->bias != 0 || row->bias_half_width != 0)
-      return 0;
+    if (row->bias != 0 || row->bias_half_width != 0 || row->resolution > 0)
+      return 0; /* the law of equal runs may leave a little, which the sum then has */
     levels++;
     seeds = row->n;
   }
@@ -268,6 +269,18 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   fprintf(out, "%s\n", *before == ',' ? "." : "");
 }
 
+/* The limit with the scatter of the seeds in its interval. The distance of the scene's own level is known far better:
+ * equal seeds have the same scatter at all levels. */
+static void print_seen(const struct convergence_limit_row *limit, const struct study_found *found, FILE *out) {
+  fprintf(out, "limit %.5g (%.5g to %.5g, seeds included), order %.2g (%.2g to %.2g); ", limit->limit.value,
+          limit->limit.low, limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
+  char text[UNCERTAINTY_TEXT];
+  for (size_t l = 0; l < found->count; l++)
+    if (found->rows[l].base && found->rows[l].resolution > 0)
+      fprintf(out, "%s * is at most %s from its limit, equal seeds compared; ", found->rows[l].setting,
+              study_show_error(found->rows[l].resolution, found->rows[l].open, text));
+}
+
 /* The law of a knob, which levels it leaves out and why, and why the knob has no more runs. */
 static void print_limit(const struct study_ladder *ladder, const struct study_found *found, FILE *out) {
   const struct convergence_limit_row *limit = &found->limit;
@@ -275,8 +288,7 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
   const char *before = "";
   fprintf(out, "%s: ", limit->knob);
   if (limit->verdict == LIMIT_SEEN)
-    fprintf(out, "limit %.5g (%.5g to %.5g), order %.2g (%.2g to %.2g); ", limit->limit.value, limit->limit.low,
-            limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
+    print_seen(limit, found, out);
   else if (limit->verdict == LIMIT_NOT_SEEN) {
     print_change(knob, found, out);
     fprintf(out,

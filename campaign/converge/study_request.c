@@ -17,6 +17,22 @@ static status add_scene(struct study_subject *subject, const struct option_list 
   return option_set_inputs(scene, set, error);
 }
 
+/* Takes the last scene away when an earlier one has the same inputs: --set has given the inputs one value in which the
+ * two points differed. */
+static void drop_equal(struct study_subject *subject) {
+  struct scene *const last = subject->scenes[subject->scene_count - 1];
+  uint8_t own[16], other[16];
+  scene_identity(last, 0, own);
+  for (size_t i = 0; i + 1 < subject->scene_count; i++) {
+    scene_identity(subject->scenes[i], 0, other);
+    if (memcmp(own, other, sizeof own) != 0)
+      continue;
+    subject->scene_count--;
+    scene_free(last);
+    return;
+  }
+}
+
 /* Every point of the campaign is a scene of its own. */
 static status add_points(struct study_subject *subject, const struct option_list *set, struct error *error) {
   CAMPAIGN_WALK walk = {0};
@@ -30,6 +46,7 @@ static status add_points(struct study_subject *subject, const struct option_list
     if (!scene)
       return STATUS_CONTENT;
     TRY(add_scene(subject, set, scene, error));
+    drop_equal(subject);
   }
   return STATUS_OK;
 }

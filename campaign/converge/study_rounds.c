@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "campaign/converge/study.h"
+#include "campaign/terminal/progress.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
 
@@ -10,7 +11,7 @@ struct rounds {
   struct study *study;
   double begin;
   int slots;
-  bool begun;
+  bool begun, quiet, told;
   double seconds, work; /* sums over the levels that have run: their ratio predicts the other levels */
 
   /* The round under way. */
@@ -267,6 +268,37 @@ static void judge(struct rounds *rounds) {
     end_ladder(ladder, "the largest number of seeds has run");
 }
 
+/* How much there is to do at least, as soon as a run has told how long one takes. */
+static void tell_size(struct rounds *rounds) {
+  const struct study *study = rounds->study;
+  const int64_t seeds = study->rule.first_seeds;
+  size_t points = 0, knobs = 0;
+  int64_t runs = 0;
+  double seconds = 0;
+  for (size_t i = 0; i < study->ladder_count; i++) {
+    const struct study_ladder *ladder = &study->ladder[i];
+    const bool new_point = i == 0 || ladder->base != study->ladder[i - 1].base;
+    points += new_point;
+    knobs++;
+    for (size_t l = 0; l < ladder->levels.count; l++)
+      if (!ladder->left_out[l] && (new_point || !ladder->levels.level[l].base)) { /* all knobs share the own level */
+        for (int64_t s = 0; s < seeds; s++)
+          runs += !ladder->ran[l][s];
+        seconds += cost_of(rounds, ladder, l, seeds) / fmax(1, rounds->slots);
+      }
+  }
+  rounds->told |= !isnan(seconds);
+  if (!rounds->told || rounds->quiet || runs == 0)
+    return;
+  char time[32], most[64] = "";
+  progress_duration(seconds, time, sizeof time);
+  if (isfinite(study->rule.seconds))
+    snprintf(most, sizeof most, "; it ends after %.4g s (--seconds)", study->rule.seconds);
+  fprintf(stderr, "clast: %zu %s, %zu %s: the first %lld seeds of all levels take %lld more runs, about %s%s\n", points,
+          points == 1 ? "point" : "points", knobs, knobs == 1 ? "knob" : "knobs in all", (long long)seeds,
+          (long long)runs, time, most);
+}
+
 static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
                          struct error *error) {
   struct rounds *rounds = context;
@@ -279,6 +311,8 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
   if (!rounds->begun)
     learn(rounds);
   rounds->begun = true;
+  if (!rounds->told)
+    tell_size(rounds);
   study->budget_spent |= seconds_left(rounds) < 0;
   rounds->ladder = choose_ladder(rounds);
   if (!rounds->ladder)
@@ -308,7 +342,7 @@ static status run_study(struct study *study, const struct study_request *request
                         struct error *error) {
   LAUNCH launch = {0};
   TRY(launch_begin(&launch, &study->limits, &request->launch, line, error));
-  struct rounds rounds = {.study = study, .begin = clock_s()};
+  struct rounds rounds = {.study = study, .begin = clock_s(), .quiet = request->launch.quiet};
   const struct series series = {.context = &rounds,
                                 .limits = &study->limits,
                                 .next = next_round,

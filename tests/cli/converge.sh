@@ -435,6 +435,11 @@ expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
 prints "disc-explosion, strain 3 %, quantity largest_fraction"
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --csv
 same "$(cut -d, -f1 out | sort -u | tr '\n' ' ')" "0.01 0.03 threshold_strain " "inputs of the levels"
+# --set of a varied input: one point is left, not the same one twice. It tells how much there is to do.
+expect 0 "$clast" converge each.yaml --set threshold.strain='3 %' --knob time_step --seeds 3 --within off --store one.db
+same "$(grep -c 'quantity largest_fraction' out)" 1 "points that differ"
+says "1 point, 1 knob: the first 3 seeds of all levels take"
+prints "from its limit, equal seeds compared"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 ! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
@@ -449,4 +454,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 111
+done_after 113
