@@ -12,7 +12,9 @@ const when = (time) => (time ? `${time.slice(0, 16).replace('T', ' ')} UTC` : '(
 function scene(stores) {
   const points = stores.flatMap((store) => store.points), runs = points.map((point) => point.n);
   const names = [...new Set(points.map((point) => point.scene))].join(', '), least = Math.min(...runs), most = Math.max(...runs);
-  return points.length ? `Scene ${names}, ${stores[0].facts.elements ? `${stores[0].facts.elements}, ` : ''}${least < most ? `${least} to ` : ''}${plural(most, 'seed')} a point. ` : '';
+  const told = stores.filter((store) => store.facts.elements), equal = new Set(told.map((store) => store.facts.elements)).size === 1;
+  const elements = told.slice(0, equal ? 1 : told.length).map((store) => `${store.facts.elements}${equal ? '' : ` (${store.name})`}, `).join('');
+  return points.length ? `Scene ${names}, ${elements}${least < most ? `${least} to ` : ''}${plural(most, 'seed')} a point. ` : '';
 }
 
 function varied(store) {

@@ -31,12 +31,17 @@ export function showCompare() {
   const less = (a, b, i) => marked(plainly(a, b, i), both(a, b));
   const plainly = (a, b, i) => differences[i].get(`${a.point_id} ${b?.point_id}`) ?? (b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
   const title = label(state.stores, state.quantity);
+  // Inputs that no store varies; of a dropped store the page does not know them.
+  const apart = others.map((other) => (first.whole || other.whole ? `${first.name} and ${other.name} may also differ in inputs that they do not vary: the command below tells them.`
+    : other.facts.apart ? `${first.name} and ${other.name} ${rows.length ? 'also ' : ''}differ in ${other.facts.apart}.` : ''));
+  const none = others.filter((other) => other.facts.no_pair).map((other) => ` ${other.name}: ${other.facts.no_pair}.`);
   fill(body('compare'),
+    ...apart.filter(Boolean).map((text) => element('p', {}, text)),
     rows.length ? table(`${title} of the points with the same varied inputs; ± is the 95 % interval over seeds`,
       ['inputs', first.name, ...others.flatMap((other) => [other.name, 'difference'])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputsOf(first, cell) || 'the only point', shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
-      : element('p', {}, 'These stores have no point in common: their varied inputs differ.'),
+      : element('p', {}, `These stores have no point in common.${none.join('')}`),
     ...[...new Set(state.stores.map((one, i) => doubtSentence(one, rows.map((row) => row[i]).filter(Boolean))))].map((text) => element('p', {}, text)),
-    element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:'),
-    ...(state.quantity === 'beta' ? [] : others.map((other) => element('p', {}, command(`clast compare ${shellFile(first.name)} ${shellFile(other.name)} --quantity ${state.quantity}`)))));
+    rows.length ? element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:') : null,
+    ...(state.quantity === 'beta' ? [] : others.filter((other) => !other.facts.no_pair).map((other) => element('p', {}, command(`clast compare ${shellFile(first.name)} ${shellFile(other.name)} --quantity ${state.quantity}`)))));
 }

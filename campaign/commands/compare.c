@@ -53,6 +53,10 @@ static status run(const struct command_line *line, struct error *error) {
     uncertainty_excluded(count, path);
     uncertainty_left_out(left_out);
   }
+  char apart[512];
+  TRY(ask_pairs_apart(pairs, apart, sizeof apart, error));
+  if (*apart)
+    fprintf(stderr, "clast: a and b also differ in %s\n", apart);
   if (table_for_people(line->format)) {
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,

@@ -71,19 +71,33 @@ static status add_label(struct making *making, const char *column, struct error 
   return ask_page_label(making->page, column, label, unit, written.factor, error);
 }
 
+/* How the store differs from the first one: inputs that none varies, or why there is no pair of points. */
+static status add_apart(struct making *making, const struct ask_pairs *pairs, struct error *error) {
+  char apart[512];
+  struct error no_pair;
+  TRY(ask_pairs_apart(pairs, apart, sizeof apart, error));
+  TRY(ask_page_fact(making->page, "apart", apart, error));
+  return ask_pairs_end(pairs, &no_pair) ? ask_page_fact(making->page, "no_pair", no_pair.message, error) : STATUS_OK;
+}
+
 /* The main results less those of the first store, as `clast compare` has them. Stores without common points have no
  * differences. */
 static status add_differences(struct making *making, const char *name, struct error *error) {
   const char *first = making->choice->stores[0];
+  bool told = false;
   for (size_t i = 0; name != first && outcome_main(i); i++) {
     ASK_PAIRS pairs = NULL;
     const char *quantity = outcome_main(i)->path;
     const status code = ask_pairs_read(first, name, quantity, &making->choice->runs, &pairs, error);
+    if (code && code != STATUS_USAGE)
+      return code;
     if (code)
-      return code == STATUS_USAGE ? STATUS_OK : code;
+      continue; /* no run has a value */
     for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
       TRY(ask_page_difference(making->page, quantity, row.point[0], row.point[1], &row.difference, error));
-    TRY(ask_pairs_end(pairs, error));
+    if (!told)
+      TRY(add_apart(making, pairs, error));
+    told = true;
   }
   return STATUS_OK;
 }

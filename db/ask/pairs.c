@@ -9,6 +9,7 @@
 
 #include "engine/grow.h"
 #include "engine/outcome.h"
+#include "engine/scene.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -21,9 +22,10 @@ struct group { /* the runs of one point */
   struct ask_doubts doubts;
 };
 struct side {
-  char path[LIMITS_PATH]; /* of the store */
-  int64_t excluded;       /* runs that a person excluded */
-  int64_t left_out;       /* ask_choice_left_out() */
+  char path[LIMITS_PATH];   /* of the store */
+  int64_t excluded;         /* runs that a person excluded */
+  int64_t left_out;         /* ask_choice_left_out() */
+  struct ask_choice choice; /* its texts are borrowed from the operands */
   bool one_point;
   struct group *groups;
   struct difference_value *values;
@@ -139,6 +141,7 @@ static status read_side(struct ask_pairs *pairs, const char *operand, struct ask
       choice.point = point;
   }
   side->one_point = choice.point > 0;
+  side->choice = choice;
   STORE store = NULL;
   TRY(store_open_reader(side->path, &store, error));
   TRY(ask_choose(store, &choice, error));
@@ -224,6 +227,71 @@ int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *lef
   *path = pairs->side[side].path;
   *left_out = pairs->side[side].left_out;
   return pairs->side[side].excluded;
+}
+
+enum { NAMED = 5 }; /* most inputs with values in a message */
+
+struct fixed {         /* of a side */
+  struct scene *scene; /* of its first point */
+  char *varied;        /* paths that change within it: axes of the store, and what its points differ in */
+};
+
+static status read_fixed(const struct side *side, struct fixed *fixed, struct error *error) {
+  STORE store = NULL;
+  TRY(store_open_reader(side->path, &store, error));
+  TRY(ask_choose(store, &side->choice, error));
+  ANSWER answer = answer_to(
+      store, error,
+      "WITH its AS MATERIALIZED (SELECT DISTINCT point_id FROM runs WHERE counts) SELECT (SELECT scene FROM point "
+      "WHERE "
+      "point_id = (SELECT min(point_id) FROM its)), (SELECT group_concat(path, ' ') FROM (SELECT path FROM axis UNION "
+      "SELECT path FROM point_input JOIN its USING (point_id) GROUP BY path HAVING count(DISTINCT value) > 1 OR "
+      "count(*) < (SELECT count(*) FROM its)))");
+  if (answer_next(&answer)) {
+    TRY(scene_parse_json("stored scene", answer_text(&answer, 0), &fixed->scene, error));
+    fixed->varied = strdup(answer_text(&answer, 1));
+  }
+  TRY(answer_end(&answer));
+  return fixed->varied ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+}
+
+/* Writes both values of an input that differs, that no side varies, and that follows from no other; counts it. */
+static void write_input(const struct fixed side[2], const struct field *row, size_t *count, char *text, size_t size) {
+  char shown[2][FIELD_TEXT_SIZE] = {"none", "none"};
+  bool follows = true;
+  for (int k = 0; k < 2; k++) {
+    const struct scene *scene = side[k].scene;
+    struct field_value value;
+    if (text_has_word(side[k].varied, row->path))
+      return;
+    if (!field_is_active(scene->kind->inputs, row, scene->inputs))
+      continue;
+    follows = follows && (row->flags & FIELD_DERIVED) && scene_follows(scene, row);
+    field_get(row, scene->inputs, &value);
+    field_show(row, &value, shown[k], sizeof shown[k]);
+  }
+  if (!follows && strcmp(shown[0], shown[1]) != 0 && (*count)++ < NAMED)
+    text_append(text, size, "%s%s (%s, %s)", *text ? ", " : "", row->path, shown[0], shown[1]);
+}
+
+status ask_pairs_apart(const struct ask_pairs *pairs, char *text, size_t size, struct error *error) {
+  struct fixed side[2] = {{0}};
+  status code = STATUS_OK;
+  size_t count = 0;
+  *text = '\0';
+  for (int k = 0; k < 2 && !code; k++)
+    code = read_fixed(&pairs->side[k], &side[k], error);
+  if (!code && strcmp(side[0].scene->name, side[1].scene->name) != 0)
+    text_append(text, size, "scene (%s, %s)", side[0].scene->name, side[1].scene->name);
+  for (size_t i = 0; !code && side[0].scene->kind == side[1].scene->kind && i < side[0].scene->kind->inputs->count; i++)
+    write_input(side, &side[0].scene->kind->inputs->rows[i], &count, text, size);
+  if (count > NAMED)
+    text_append(text, size, " and %zu more inputs", count - NAMED);
+  for (int k = 0; k < 2; k++) {
+    scene_free(side[k].scene);
+    free(side[k].varied);
+  }
+  return code;
 }
 
 enum { LOOKED_AT = 300 }; /* points of a side */

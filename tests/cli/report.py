@@ -348,6 +348,19 @@ def slices(browser):
     done("a map of three inputs shows one value of the third")
 
 
+def side_by_side(browser):
+    browser.open("two.html")
+    wait_shown(browser, 1)
+    told = text(browser, "#compare .body")
+    assert "small.db and other.db also differ in charge.energy (2000 J/m, 3000 J/m)." in told and "The same from a shell" in told, told
+    assert " 44 grains (small.db), 49 grains (other.db), 3 seeds a point" in text(browser, "#made"), text(browser, "#made")
+    browser.open("apart.html")
+    wait_shown(browser, 1)
+    told = text(browser, "#compare .body")
+    assert "marked.db: no two points have the same varied inputs" in told and "The same from a shell" not in told, told
+    done("stores side by side tell inputs that differ, and grains of each")
+
+
 def widths(browser):
     for width in (1280, 768, 390):
         browser.size(width, 900)
@@ -373,6 +386,7 @@ with Browser() as browser:
     widths(browser)
     marks(browser)
     slices(browser)
+    side_by_side(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]
     assert outside == [], outside

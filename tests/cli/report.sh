@@ -184,8 +184,11 @@ if [ "$sanitized" -eq 0 ]; then
   tiny marked # a time step near the longest stable one marks the results of half of the points
   sed -i 's/threshold.angle: .*/fidelity.time_step: [1 us, 4 us]/; s/stop.end_time: [^,}]*/stop.least_time: 1 ms/' marked.yaml
   expect 0 "$clast" run marked.yaml -j 2 --quiet
-  python - <<'PY' # a study that knows no limit, and a mean number of grains that differs by a part of one
+  python - <<'PY' # a study that knows no limit, a mean number of grains that differs by a part of one, and more grains
 import sqlite3
+other = sqlite3.connect('other.db')
+other.execute('update result_dem set grains = grains + 5')
+other.commit()
 db = sqlite3.connect('marked.db')
 db.execute("insert into convergence (base_point_id, results_version, level, point_id, knob, quantity, base, resolution, open)"
            " select point_id, max(results_version), 0, point_id, 'time_step', 'largest_fraction', 1, 0.042, 1 from run"
@@ -194,6 +197,11 @@ db.execute('update result_dem set grains = grains + 1 where run_id = (select min
 db.commit()
 PY
   expect 0 "$clast" report marked.db
+  # Two stores: an input that both hold fixed differs; and no point in common.
+  expect 0 "$clast" compare small.db other.db
+  says "a and b also differ in charge.energy (2000 J/m, 3000 J/m)"
+  expect 0 "$clast" report small.db other.db -o two.html
+  expect 0 "$clast" report small.db marked.db -o apart.html
   # The page's own mean and standard deviation do not depend on the unit.
   echo '{"type": "module"}' >package.json
   cp "$source/analysis/report/statistics.js" .
@@ -211,7 +219,7 @@ JS
   expect 0 "$clast" report three.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 41
+  done_after 44
 else
   done_after 34
 fi
