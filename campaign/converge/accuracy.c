@@ -134,6 +134,8 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   const bool moves = row->resolution != 0; /* 0 where no run of the knob differs */
   if (resolution && row->base && row->open && moves && !finding->accuracy->open)
     finding->accuracy->open = knob;
+  if (knob && knob == finding->accuracy->open && row->reference && row->n > 0)
+    finding->accuracy->open_value = strtod(row->setting, NULL);
   if (!ran)
     finding->levels = 0;
   if (resolution && row->reference && row->step > 0 && row->resolution > finding->accuracy->widest_resolution) {
@@ -200,17 +202,51 @@ static status add_option(struct finding *finding, const struct convergence_row *
   return STATUS_OK;
 }
 
-/* Work of a run of the campaign's scene with this setting of the knob. NaN: the scene refuses it, or its result would
- * be marked where that of the scene's own settings is not (finer grains with the same time step). */
+/* The first condition that would mark this scene's result and not that of the campaign's scene (finer grains with the
+ * same time step). NULL: none. */
+static const struct condition *mark_of(const struct campaign *campaign, const struct scene *scene) {
+  const struct condition *list = scene->kind->conditions;
+  const condition_set marks = condition_before(list, scene->inputs, NULL) &
+                              ~condition_before(list, campaign->scene->inputs, NULL);
+  size_t k = 0;
+  while (marks && !(marks >> k & 1))
+    k++;
+  return marks ? &list[k] : NULL;
+}
+
+/* Work of a run of the campaign's scene with this setting of the knob. NaN: the scene refuses it, or it is marked. */
 static double work_at(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   struct error ignored;
   const struct engine_kind *kind = campaign->scene->kind;
   SCENE scene = scene_copy(campaign->scene);
-  if (!kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK)
+  if (!kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK || mark_of(campaign, scene))
     return NAN;
-  const condition_set marks = condition_before(kind->conditions, scene->inputs, NULL);
-  return marks & ~condition_before(kind->conditions, campaign->scene->inputs, NULL) ? (double)NAN
-                                                                                    : kind->work(scene->inputs);
+  return kind->work(scene->inputs);
+}
+
+/* The condition that marks a level. With a finer setting of another knob of resolution it may not: writes
+ * "fidelity.time_step='2.5e-07 s'", and "" if none helps. NULL: the level is not marked. */
+static const struct condition *mark_of_level(const struct campaign *campaign, const struct knob *knob,
+                                             const char *setting, char *remedy, size_t size) {
+  enum { HALVINGS = 10 };
+  struct error ignored;
+  SCENE level = scene_copy(campaign->scene);
+  *remedy = '\0';
+  const struct condition *mark = ladder_turn(knob, level, setting, &ignored) == STATUS_OK ? mark_of(campaign, level)
+                                                                                          : NULL;
+  for (const struct knob *other = campaign->scene->kind->knobs; mark && other->name; other++) {
+    char own[64], finer[64];
+    if (other == knob || other->group != KNOB_RESOLUTION || !(other->step_power > 0) || is_varied(campaign, other, ""))
+      continue;
+    ladder_setting(other, campaign->scene, own, sizeof own);
+    for (int h = 1; h <= HALVINGS && !*remedy; h++) {
+      SCENE scene = scene_copy(level);
+      snprintf(finer, sizeof finer, "%.6g", ldexp(strtod(own, NULL), -h));
+      if (ladder_turn(other, scene, finer, &ignored) == STATUS_OK && !mark_of(campaign, scene))
+        snprintf(remedy, size, "%s='%s %s'", other->inputs[0].path, finer, unit_of(campaign, other));
+    }
+  }
+  return mark;
 }
 
 /* Marks of the result in runs of the studied scene with this setting; knob NULL: with its own settings. */
@@ -250,6 +286,14 @@ static status is_marked(struct finding *finding, const struct knob *knob, const 
   return STATUS_OK;
 }
 
+static void note_marked(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
+  struct accuracy *accuracy = finding->accuracy;
+  char setting[160];
+  study_show_setting(finding->campaign->scene->kind, knob, row->setting, setting, sizeof setting);
+  text_append(accuracy->marked, sizeof accuracy->marked, "%s%s = %s (%s)", *accuracy->marked ? "; " : "", row->knob,
+              setting, finding->marks);
+}
+
 /* Second pass: a level as an option. */
 static status take_option(struct finding *finding, const struct convergence_row *row, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
@@ -269,6 +313,8 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
   TRY(is_marked(finding, knob, row->setting, &marked, error));
+  if (marked && !row->base)
+    note_marked(finding, knob, row);
   if (there || (marked && !row->base))
     return STATUS_OK;
 
@@ -433,25 +479,52 @@ static const struct accuracy_option *finest_open(const struct accuracy *accuracy
   return finest;
 }
 
-/* The command that studies the knob at a level, one on either side, and the scene's own, whose error is wanted. */
+/* The command that studies the knob at a level, one on either side, and the scene's own, whose error is wanted. Levels
+ * that would be marked are studied with another input of a shorter step. */
 static void append_study(const struct accuracy *accuracy, const struct campaign *campaign, const struct knob *knob,
                          double value, char *next, size_t size) {
   const double finer = knob->step_power < 0 ? 2 : 0.5;
   char own[64];
   ladder_setting(knob, campaign->scene, own, sizeof own);
   const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
-  text_append(next, size, "`clast converge %s --knob %s=", accuracy->path, knob->name);
+  char finest[64], remedy[160], set[sizeof remedy + 8] = "";
+  snprintf(finest, sizeof finest, "%.6g", value * finer);
+  const struct condition *mark = mark_of_level(campaign, knob, finest, remedy, sizeof remedy);
+  if (mark && !*remedy) {
+    text_append(next, size, ", but runs of them would be in doubt, and do not count: clast explain %s", mark->word);
+    return;
+  }
+  if (mark) {
+    snprintf(set, sizeof set, " --set %s", remedy);
+    text_append(next, size,
+                ", with --set %s here and in later commands, or in `set` of the campaign: else their runs "
+                "are in doubt (clast explain %s) and do not count",
+                remedy, mark->word);
+  }
+  text_append(next, size, ": `clast converge %s%s --knob %s=", accuracy->path, set, knob->name);
   for (size_t i = 0; i < 4; i++)
     if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
       text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit_of(campaign, knob));
   text_append(next, size, "`");
 }
 
+/* The unit of the accurate quantity, with a space before it; "" for plain numbers. */
+static const char *width_unit(const struct campaign *campaign, char text[UNIT_TEXT]) {
+  struct error ignored;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(campaign->scene->kind, campaign->accuracy_quantity, &of_outcome,
+                                              &ignored);
+  const char *unit = row ? field_shown_unit(row) : "";
+  snprintf(text, UNIT_TEXT, "%s%s", *unit ? " " : "", unit);
+  return text;
+}
+
 /* More levels: with which, and what a run of the finest one takes. */
 static void advise_levels(const struct accuracy *accuracy, const struct campaign *campaign,
                           const struct accuracy_option *finest, char *next, size_t size) {
   const struct knob *knob = accuracy->open;
-  const double value = strtod(finest->setting, NULL), finer = knob->step_power < 0 ? 2 : 0.5;
+  const double finer = knob->step_power < 0 ? 2 : 0.5;
+  const double value = accuracy->open_value > 0 ? accuracy->open_value : strtod(finest->setting, NULL);
   const char *unit = unit_of(campaign, knob);
   char setting[64], time[32];
   snprintf(setting, sizeof setting, "%.6g", value * finer);
@@ -460,7 +533,7 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
   text_append(
       next, size,
       "The results show no limit in %s up to %.4g%s%s: no value of it is known to be enough, and more seeds alone "
-      "do not help. Finer levels may show a limit%s%s%s: ",
+      "do not help. Finer levels may show a limit%s%s%s",
       knob->name, value, *unit ? " " : "", unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
       run_s > 0 ? ")" : "");
   append_study(accuracy, campaign, knob, value, next, size);
@@ -473,15 +546,17 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
   const double error = resolution_of(best), middle = best->middle * error;
   const double factor = error > 0 ? (error - middle) / (accuracy->within - middle) : 2; /* 0: no run differs yet */
   const double seeds = ceil((double)accuracy->n * factor * factor);
+  char text[UNIT_TEXT];
   if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
     if (middle < accuracy->within)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
     else
       text_append(next, size,
-                  "More seeds are not likely to help: the resolution alone makes a difference of about %.2g", middle);
+                  "More seeds are not likely to help: they narrow the interval of this error, whose middle is %.2g%s",
+                  middle, width_unit(campaign, text));
     text_append(next, size, ". No setting that was studied is enough");
     if (middle >= accuracy->within && accuracy->widest) {
-      text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it: ", accuracy->widest->name);
+      text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it", accuracy->widest->name);
       append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, next, size);
     }
     return;
@@ -527,23 +602,12 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
     snprintf(text, size, "%s = %s", option->knob, setting);
 }
 
-/* The unit of the accurate quantity, with a space before it; "" for plain numbers. */
-static const char *width_unit(const struct campaign *campaign, char text[UNIT_TEXT]) {
-  struct error ignored;
-  bool of_outcome;
-  const struct field *row = campaign_quantity(campaign->scene->kind, campaign->accuracy_quantity, &of_outcome,
-                                              &ignored);
-  const char *unit = row ? field_shown_unit(row) : "";
-  snprintf(text, UNIT_TEXT, "%s%s", *unit ? " " : "", unit);
-  return text;
-}
-
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", share[32] = "", more[256] = "", chosen[256], smallest[512], text[UNIT_TEXT];
+  char next[1600] = "", share[32] = "", more[256] = "", chosen[256], smallest[1200], text[UNIT_TEXT];
   const char *unit = width_unit(campaign, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
@@ -572,6 +636,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
     snprintf(smallest, sizeof smallest,
              "No run of the study differs between the settings, which does not tell how far "
              "other runs may be");
+  text_append(smallest, sizeof smallest, *accuracy->marked ? ". Levels whose runs are in doubt do not count: %s" : "%s",
+              accuracy->marked);
   return status_fail(error, STATUS_CONTENT,
                      "accuracy: no setting %s %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64
                      " seeds). %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
@@ -728,6 +794,9 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     words_print(stdout, "",
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
                 "point_cpu: by the runs of the study. run_cost: against the smallest error");
+    if (*accuracy.marked && accuracy.chosen < accuracy.count)
+      words_print(stdout, "", "Left out, as their runs are in doubt (!) where the scene's own are not: %s",
+                  accuracy.marked);
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",
                   "The chosen setting is finer than any level that was run. Its error is that of the finest level "

@@ -425,10 +425,29 @@ says "(resolution: grains)"
 # More seeds: no number when the middle of the interval is out of reach. A smaller study does not replace a larger one.
 sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
-says "More seeds are not likely to help: the resolution alone makes a difference of about 0.0"
-says "Finer levels of grains, which leaves most of it, may narrow it: "
+says "More seeds are not likely to help: they narrow the interval of this error, whose middle is 0.0"
+says "Finer levels of grains, which leaves most of it, may narrow it"
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 says "best: no level is both cheaper and nearer" # the legend tells the columns that are shown
+# Levels whose runs are in doubt are no choice: `plan` says which and why, and with which input finer ones count.
+cat >coarse.yaml <<'YAML'
+name: coarse
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 0.5 ms}
+accuracy: {quantity: largest_fraction, within: 0.01}
+store: coarse.db
+YAML
+expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,2mm --seeds 3 --within off
+expect 65 "$clast" plan coarse.yaml
+says "Levels whose runs are in doubt do not count: grains = 0.002 m (3 of 3 runs of the study: step"
+says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob grains=0.004m,0.002m,0.001m,0.01069m\`"
+sed 's/within: 0.01/within: 0.9/' coarse.yaml >wide.yaml
+expect 0 "$clast" plan wide.yaml --no-trial
+prints "Left out, as their runs are in doubt (!) where the scene's own are not: grains = 0.002 m (3 of 3"
+# Two studies with common levels are one line of the status, in which a common run counts once.
+expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
+expect 0 "$clast" status coarse.db
+same "$(awk '/coarse grains/ { print $5, $6, $7 }' out)" "4 12 12" "points and runs of two studies with common levels"
 # A study of several points names each of them, for people and for programs.
 printf 'name: each\nscene: disc-explosion\nset: {body.diameter: 6 cm, stop.end_time: 0.2 ms}\nvary: {threshold.strain: [1 %%, 3 %%]}\nstore: each.db\n' >each.yaml
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
@@ -454,4 +473,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 113
+done_after 119

@@ -218,6 +218,11 @@ static void a_finer_setting_that_would_be_marked_is_none(void **state) {
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.0056") == 0);
   accuracy_clear(&accuracy);
+  /* Advice of finer levels has the shorter step that they need: at 0.004 m it is 0.28 of the stable one. */
+  campaign->accuracy_within = 0.001;
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "clast converge t.yaml --set fidelity.time_step='5e-07 s' --knob "
+                                        "grains=0.016m,0.008m,0.004m,0.01069m`"));
   campaign_free(campaign);
 }
 
