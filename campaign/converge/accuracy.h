@@ -43,7 +43,7 @@ struct accuracy {
   const struct knob *open;   /* of resolution, without a limit; NULL: none */
   const struct knob *widest; /* of resolution, the one that leaves most unknown at its finest level; NULL: none */
   double widest_resolution, widest_value; /* what it leaves there, and this level */
-  double open_value;  /* the finest level of `open` with runs; 0: none */
+  double open_value;                      /* the finest level of `open` with runs; 0: none */
   char marked[512];   /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
   char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
   char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
