@@ -5,7 +5,7 @@ import {cells, doubtSentence, modesText} from './plane.js';
 import * as questions from './questions.js';
 import {nameOf, whereOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
-import {summary} from './statistics.js';
+import {quantileInterval, summary} from './statistics.js';
 import {ask, has} from './stores.js';
 import {between, label, marked, number, plural, rangeOf, shellFile, withInterval} from './words.js';
 
@@ -73,7 +73,10 @@ export async function showSeeds() {
   const known = apart && has(from, 'quantile') ? samples.map(({point}) => new Map(ask(from, questions.quantiles, {quantity, point: point.point_id}).map((row) => [row.share, row]))) : [];
   const quantileOf = (share, key) => (row, i) => {
     const all = known[i]?.get(share);
-    return all ? between(all.value, all.low, all.high) : number(row[key]);
+    if (all) return between(all.value, all.low, all.high);
+    const {point, values} = drawn[i]; // an interval is of all runs of a point
+    const {low, high} = apart && valuesOf(from, point, 'run_id').length === point.n ? quantileInterval(Float64Array.from(values).sort(), share) : {low: null, high: null};
+    return between(row[key], low, high);
   };
   const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['lower quartile', quantileOf(0.25, 'quarter')], ['upper quartile', quantileOf(0.75, 'threeQuarters')],
     ['standard deviation of the runs here', (row) => number(row.sd)], ['smallest here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];

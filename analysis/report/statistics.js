@@ -37,6 +37,20 @@ export function quantile(sorted, p) {
   return below + 1 < sorted.length ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]) : sorted[below];
 }
 
+// Its 95 % interval between order statistics, as of `clast scatter` (analysis/statistics/scatter.c): at most low - 1 of n
+// values are below the quantile with a probability of at most 0.025, and likewise above.
+export function quantileInterval(sorted, p) {
+  const n = sorted.length;
+  let low = null, high = null, term = n * Math.log1p(-p), below = 0;
+  for (let k = 0; k < n && high === null; k++) {
+    below += Math.exp(term); // P(X <= k) of the binomial law
+    if (low === null && below > 0.025) low = k;
+    if (1 - below <= 0.025) high = k;
+    term += Math.log(((n - k) / (k + 1)) * (p / (1 - p)));
+  }
+  return {low: low > 0 ? sorted[low - 1] : null, high: high === null ? null : sorted[high]};
+}
+
 export function summary(values, range = {}) {
   const n = values.length;
   const largest = values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);

@@ -132,6 +132,22 @@ for (const row of JSON.parse(readFileSync('rows.json', 'utf8')))
     if (!table.includes(` ${shown}`)) throw new Error(`${name}: the table has no ${shown}`);
   }
 JS
+  # So are intervals of quantiles of any result, as of `clast scatter`.
+  expect 0 "$clast" scatter $store.db -Q fragment_count --json
+  "$clast" query $store.db --json "SELECT point_id, fragment_count AS value FROM runs WHERE counts" >rows.json 2>err
+  node --input-type=module - "$source/analysis/report/statistics.js" <<'JS' || fail "$store: other quantiles on the page"
+import {readFileSync} from 'node:fs';
+const {quantile, quantileInterval} = await import(process.argv[2]);
+const runs = JSON.parse(readFileSync('rows.json', 'utf8')), share = {q05: 0.05, q25: 0.25, median: 0.5, q75: 0.75, q95: 0.95};
+let known = 0;
+for (const {point_id, statistic, value, low, high} of JSON.parse(readFileSync('out', 'utf8')).filter((row) => row.statistic in share)) {
+  const sorted = runs.filter((run) => run.point_id === point_id).map((run) => run.value).sort((a, b) => a - b);
+  const own = {value: quantile(sorted, share[statistic]), ...quantileInterval(sorted, share[statistic])};
+  if (Math.abs(own.value - value) > 1e-9 * value || own.low !== low || own.high !== high) throw new Error(JSON.stringify({point_id, statistic, value, low, high, own}));
+  known += low !== null && high !== null;
+}
+if (known !== (runs.length > 12 ? 12 : 0)) throw new Error(`${known} intervals`);
+JS
 done
 ok "intervals"
 
@@ -219,7 +235,7 @@ JS
   expect 0 "$clast" report three.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 44
+  done_after 46
 else
-  done_after 34
+  done_after 36
 fi
