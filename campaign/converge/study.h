@@ -147,6 +147,7 @@ struct study_subject {
   size_t scene_count;
   char reference[2 * FIELD_TEXT_SIZE]; /* path of the scene from the current folder */
   bool quiet;                          /* prints no remarks on levels that are left out */
+  char told[4096];                     /* such remarks so far: each is printed once, for the first point */
 };
 
 /* Loads `path`, a file of a campaign or a scene or a built-in scene, and sets up its study: limits, quantities, rule,

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "schemas/memory.h"
+#include "schemas/text.h"
 
 /* ---- the subject ---- */
 
@@ -162,8 +163,11 @@ static status add_knob(struct study_subject *subject, const struct scene *scene,
   struct ladder levels;
   OWNED char *notes = NULL;
   status code = ladder_make(knob, scene, settings, &levels, &notes, error);
-  for (const char *line = code || subject->quiet ? NULL : notes; line && *line; line += strcspn(line, "\n") + 1)
-    fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
+  if (notes && code == STATUS_OK && !subject->quiet && !strstr(subject->told, notes)) {
+    text_append(subject->told, sizeof subject->told, "%s\n", notes);
+    for (const char *line = notes; *line; line += strcspn(line, "\n") + 1)
+      fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
+  }
   if (code == STATUS_CONTENT && !named) {
     *error = (struct error){0};
     return STATUS_OK;

@@ -8,6 +8,12 @@ for word in cube brick block box sphere ball cylinder rod ring disc steel stone 
   prints "$word"
 done
 ok "everyday words"
+# Heads of tables lead to their meaning, not to a path that ends so.
+for word in best bias level sd ref cpu_s corr cutoff_p pairs runs_as_far q05 below sd_seeds number_density too_wide warned; do
+  "$clast" explain "$word" >out 2>err || fail "explain $word"
+  [ "$(head -1 out)" = "$word" ] || fail "explain $word answers with $(head -1 out)"
+done
+ok "heads of tables"
 
 # A path of a table stays whole.
 expect 0 "$clast" converge --list
@@ -83,4 +89,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 21
+done_after 22
