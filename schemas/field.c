@@ -20,13 +20,15 @@ bool field_is_share(const struct field *row) {
 
 /* ---- names ---- */
 
+void field_guess_path(const char *path, struct text_guess *guess) {
+  text_guess_offer(guess, path);
+  for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.'))
+    text_guess_offer_part(guess, dot + 1, path);
+}
+
 void field_guess(const struct field_table *table, struct text_guess *guess) {
-  for (size_t i = 0; i < table->count; i++) {
-    const char *path = table->rows[i].path;
-    text_guess_offer(guess, path);
-    for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.'))
-      text_guess_offer_part(guess, dot + 1, path);
-  }
+  for (size_t i = 0; i < table->count; i++)
+    field_guess_path(table->rows[i].path, guess);
 }
 
 bool field_nearest(const struct field_table *table, const char *path, char near[FIELD_NEAR_SIZE]) {

@@ -133,6 +133,8 @@ const struct field *field_find(const struct field_table *table, const char *path
 /* Offers every path of the table, and every trailing part of it, to the guess: "young_modulos" finds
  * "grain.young_modulus". */
 void field_guess(const struct field_table *table, struct text_guess *guess);
+/* The same of one path. */
+void field_guess_path(const char *path, struct text_guess *guess);
 /* The nearest path of one table; false when none is near. A last word without a fault counts more than letters: a wrong
  * section "impact.radius" gives all that end so, "target.radius' or 'projectile.radius". */
 enum { FIELD_NEAR_SIZE = 600 };

@@ -51,6 +51,24 @@ static bool varies(const struct design_axis *axis) {
   return axis->kind == DESIGN_AXIS_LINKED || axis->level_count != 1;
 }
 
+/* The input nearest to a mistyped name: of those that the campaign varies, else of those with an effect in its scene.
+ * NULL: none is near. */
+static const char *nearest_input(const struct campaign *campaign, const char *name) {
+  const struct scene *scene = campaign->scene;
+  const struct field_table *inputs = scene->kind->inputs;
+  struct text_guess guess = {0};
+  for (int all = 0; all <= 1 && !guess.nearest; all++) {
+    guess = text_guess(name);
+    for (size_t i = 0; i < inputs->count; i++) {
+      const struct field *row = &inputs->rows[i];
+      const struct design_axis *axis = campaign_axis(campaign, row->path);
+      if (all ? field_is_active(inputs, row, scene->inputs) : axis && varies(axis))
+        field_guess_path(row->path, &guess);
+    }
+  }
+  return guess.nearest;
+}
+
 static status find_input(struct find *find, const char *name, struct error *error) {
   const struct campaign *campaign = find->campaign;
   const struct design_axis *only = NULL;
@@ -64,6 +82,10 @@ static status find_input(struct find *find, const char *name, struct error *erro
     return status_fail(error, STATUS_USAGE, "the campaign varies %zu inputs: name one with --input", count);
   const struct scene *scene = campaign->scene;
   find->input = name ? field_find_in(scene->kind->inputs, name, scene->inputs, error) : only->row;
+  const bool unknown = !find->input && !field_ending(scene->kind->inputs, name, NULL);
+  const char *nearest = unknown ? nearest_input(campaign, name) : NULL;
+  if (nearest)
+    return status_fail(error, STATUS_USAGE, "--input %s: no input has this name; did you mean '%s'?", name, nearest);
   if (!find->input)
     return STATUS_USAGE;
   if (!field_is_number(find->input))

@@ -127,6 +127,12 @@ for wrong in "--share 0.5|--level is missing" "--level 1.5|at most 1, got 1.5" "
   expect 64 "$clast" find disc.yaml ${wrong%%|*}
   says "${wrong#*|}"; one_error; silent out
 done
+# A mistyped input is first one that the campaign varies (rate is loading.rate, too, which has no effect here).
+printf 'name: ring\nscene: ring-explosion\nvary: {expansion.rate: [60 1/s, 140 1/s]}\n' >ring.yaml
+for wrong in "rat|expansion.rate" "densit|grain.density" "loading.rte|loading.rate"; do
+  expect 64 "$clast" find ring.yaml --level 0.5 --input ${wrong%%|*}
+  says "did you mean '${wrong#*|}'?"; one_error; silent out
+done
 sed 's/^vary: {/vary: {threshold.angle: [1 deg, 2 deg], /' disc.yaml >two.yaml
 expect 64 "$clast" find two.yaml --level 0.5
 says "varies 2 inputs: name one"
@@ -134,4 +140,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 38
+done_after 41

@@ -14,6 +14,10 @@ for word in best bias level sd ref cpu_s corr cutoff_p pairs runs_as_far q05 bel
   [ "$(head -1 out)" = "$word" ] || fail "explain $word answers with $(head -1 out)"
 done
 ok "heads of tables"
+for word in alpha_0 alpha0; do
+  expect 0 "$clast" explain $word
+  prints "target.material.porosity.distention"
+done
 
 # A path of a table stays whole.
 expect 0 "$clast" converge --list
@@ -89,4 +93,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 22
+done_after 24

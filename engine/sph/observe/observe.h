@@ -94,8 +94,8 @@ struct sph_fragments_options {
 };
 struct sph_fragments_options sph_fragments_default(void); /* D < 1, one mean h, layer, open, current h */
 
-/* A fragment has a shape, a spin and a speed of its own from this number of particles on. The ratio of shortest to
- * longest axis of a sphere cut from the lattice is 0.93 at 100 particles, 0.69 at 10. */
+/* A fragment has a spin and a speed of its own, and the largest one axes, from this number of particles on. The ratio
+ * of shortest to longest axis of a sphere cut from the lattice is 0.93 at 100 particles, 0.69 at 10. */
 enum { SPH_FRAGMENTS_MEASURED = 100 };
 
 /* A fragment has three lengths from this number of particles on: our choice. 60 are about four across. */
