@@ -93,9 +93,10 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
         least = fmin(least, find->x[i]);
         most = fmax(most, find->x[i]);
       }
-    text_append(text, SENTENCE, "%s is %s %s for %s from %s to %s%s: no crossing in the bracket.", subject,
+    text_append(text, SENTENCE,
+                "%s is %s %s for %s from %s to %s%s: no crossing in the bracket (95 %%, from all %zu runs).", subject,
                 found->kind == CROSSING_ABOVE ? "above" : "below", level, input, show(find, least, low),
-                show(find, most, high), mark);
+                show(find, most, high), mark, found->n);
     break;
   case CROSSING_SEVERAL:
     text_append(text, SENTENCE, "%s crosses %s several times%s", subject, level, mark);
@@ -118,6 +119,11 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
                 input, found->low < 0 ? high : low);
     break;
   }
+}
+
+/* Is the answer that nothing crosses? */
+static bool is_none(const struct find *find) {
+  return find->found.kind == CROSSING_ABOVE || find->found.kind == CROSSING_BELOW;
 }
 
 /* ---- the runs along the input ---- */
@@ -167,7 +173,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
 static status print_bins(const struct find *find, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
-  bool any_weak = false;
+  bool any_weak = false, holds = false;
   const struct sample_range range = sample_range(find->quantity.row);
   char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 8], above[128];
   TRY(make_bins(find, bins, &count, error));
@@ -183,6 +189,7 @@ static status print_bins(const struct find *find, struct error *error) {
     table_integer(table, (int64_t)bins[i].n);
     uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, &range, mean);
     any_weak |= bins[i].mean.weak;
+    holds |= isnan(find->share) && bins[i].mean.low < find->level && find->level < bins[i].mean.high;
     if (bins[i].mean.weak)
       text_append(mean, sizeof mean, "~");
     uncertainty_mark(&bins[i].doubts, mean + strlen(mean));
@@ -195,6 +202,10 @@ static status print_bins(const struct find *find, struct error *error) {
               "clast: runs of neighbouring values are one row, from its least to its largest value, with the mean over "
               "them and its 95 %% interval%s",
               any_weak ? "; ~: weak, too few runs" : "");
+  if (holds && is_none(find))
+    words_print(stderr, "",
+                "clast: a row's interval is of its runs alone, and one holds the level. The answer is of all runs: "
+                "neighbouring rows tell a row's scatter, too, and the mean is taken to keep rising or to keep falling");
   return STATUS_OK;
 }
 
@@ -210,7 +221,7 @@ static double value_at(const struct find *find, double x) {
 
 static status print_rows(const struct find *find, enum table_format format, struct error *error) {
   const struct crossing *found = &find->found;
-  const bool has = found->kind != CROSSING_ABOVE && found->kind != CROSSING_BELOW;
+  const bool has = !is_none(find);
   const size_t parts = found->kind == CROSSING_SEVERAL ? found->parts : 1;
   TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"kind", "quantity", "level", "share", "input", "unit", "at", "low95",

@@ -81,6 +81,11 @@ says "$runs found in the store"; prints "a larger --max-runs goes on"
 expect 0 "$clast" find disc.yaml --level 1
 prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the"
 grep -q "runs: between" err && fail "an interval of no crossing"
+grep -q "holds the level" err && fail "no mean is above 1"
+# No crossing is decided from all runs; the interval of a row's own runs may hold the level, which is said.
+expect 0 "$clast" find disc.yaml --level 0.97 --store end.db
+tr '\n' ' ' <out | grep -qF "no crossing in the bracket (95 %, from all $(number end.db 'select count(*) from run') runs)." || fail "how sure is not told"
+says "a row's interval is of its runs alone, and one holds the level"
 expect 66 "$clast" find disc-explosion --level 0.5
 says "disc-explosion is a built-in scene; a campaign is a file"; one_error
 expect 0 "$clast" find disc.yaml --level 1 --json
@@ -140,4 +145,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 41
+done_after 42
