@@ -133,8 +133,8 @@ for (const row of JSON.parse(readFileSync('rows.json', 'utf8')))
   }
 JS
   # So are intervals of quantiles of any result, as of `clast scatter`.
-  expect 0 "$clast" scatter $store.db -Q fragment_count --json
-  "$clast" query $store.db --json "SELECT point_id, fragment_count AS value FROM runs WHERE counts" >rows.json 2>err
+  expect 0 "$clast" scatter $store.db -Q mean_fragment_mass --json
+  "$clast" query $store.db --json "SELECT point_id, mean_fragment_mass AS value FROM runs WHERE counts" >rows.json 2>err
   node --input-type=module - "$source/analysis/report/statistics.js" <<'JS' || fail "$store: other quantiles on the page"
 import {readFileSync} from 'node:fs';
 const {quantile, quantileInterval} = await import(process.argv[2]);
