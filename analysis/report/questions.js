@@ -24,9 +24,10 @@ export const failedRuns = `SELECT state AS reason, count(*) AS n, min(message) A
   WHERE counts = 0 AND surplus = 0 GROUP BY state`;
 export const failedAttempts = 'SELECT reason, count(*) AS n, min(message) AS example FROM attempt GROUP BY reason';
 
-// Newer versions of results come later.
+// Newer versions of results come later. A study also stores finer settings, without runs, to tell their error.
 export const points = (axes, counts) => `SELECT point_id, scene, results_version, n, failed, censored, surplus, failed_attempts${counts}
-  ${axes.map((axis) => `, ${name(axis)}`).join('')} FROM points ORDER BY point_id, results_version`;
+  ${axes.map((axis) => `, ${name(axis)}`).join('')} FROM points WHERE n > 0 OR failed > 0 OR point_id IN (SELECT point_id FROM campaign_point)
+  ORDER BY point_id, results_version`;
 export const mainStatistics = (quantity) => `SELECT point_id, results_version, n, ${name(`${quantity}_mean`)} AS mean,
   ${name(`${quantity}_sd`)} AS sd FROM points ORDER BY results_version`;
 export const otherStatistics = 'SELECT point_id, results_version, n, mean, sd FROM means WHERE quantity = :quantity ORDER BY results_version';

@@ -88,8 +88,16 @@ ok "the exponents that the page leaves out"
 printf '%s\n' 'name: load' 'scene: uniaxial' 'set: {body.rows: 6, body.columns: 4}' 'seeds: 1' >load.yaml
 expect 0 "$clast" run load.yaml --quiet
 expect 0 "$clast" converge load.yaml --knob time_step -Q young_modulus --seeds 2 --max-seeds 2 --within off --store load.db
+python - <<'PY' # a finer setting, for which a study tells an error
+import sqlite3
+db = sqlite3.connect('load.db')
+db.execute("insert into point (hash, engine, scene_name, scene) select randomblob(16), engine, scene_name, scene from point where point_id = 1")
+db.execute("insert into point_input select (select max(point_id) from point), path, value from point_input where point_id = 1")
+db.commit()
+PY
 expect 0 "$clast" report load.db
 says "left out: "
+expect 0 "$clast" report load.db --studies -o studied.html
 python - <<'PY'
 import base64, gzip, re, sqlite3
 (text,) = re.findall(r'class="store">([^<]*)<', open('load.html').read())
@@ -97,6 +105,21 @@ db = sqlite3.connect(':memory:')
 db.deserialize(gzip.decompress(base64.b64decode(text)))
 (quantity,) = db.execute("select value from fact where name = 'default_quantity'").fetchone()
 assert quantity.endswith('young_modulus'), quantity
+PY
+# That setting is no point of the page, nor of a store that is dropped on it.
+node --input-type=module - "$source/analysis/report/questions.js" <<'JS' >sql.json
+const {points} = await import(process.argv[2]);
+console.log(JSON.stringify(points([], '')));
+JS
+python - <<'PY' || fail "points that no campaign asked for"
+import base64, gzip, json, re, sqlite3
+(text,) = re.findall(r'class="store">([^<]*)<', open('studied.html').read())
+page = sqlite3.connect(':memory:')
+page.deserialize(gzip.decompress(base64.b64decode(text)))
+store = sqlite3.connect('file:load.db?mode=ro', uri=True)
+asked = {row[0] for row in store.execute('select point_id from campaign_point')}
+for db in (page, store):
+    assert {row[0] for row in db.execute(json.load(open('sql.json')))} == asked, asked
 PY
 ok "what the scene is made for"
 
@@ -235,7 +258,7 @@ JS
   expect 0 "$clast" report three.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 46
+  done_after 47
 else
-  done_after 36
+  done_after 37
 fi
