@@ -184,17 +184,40 @@ static void cover(double view[4], double x, double y, double radius) {
   view[3] = fmax(view[3], y + radius);
 }
 
-/* Shows all resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. With
- * fragments apart: all drawn discs. */
+/* Is what has no fragments, such as a projectile, one body? It is before the run, and as long as its particles fill a
+ * tenth of their box: a ball fills half of it, a spray after the impact nearly nothing. */
+static bool is_body(const struct picture_cloud *c) {
+  double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, filled = 0, box = 1;
+  size_t count = 0;
+  if (c->time <= 0)
+    return true;
+  for (size_t i = 0; i < c->n; i++) {
+    if (c->part[i] != PICTURE_LEFT_OUT)
+      continue;
+    count++;
+    filled += c->size[i] * c->size[i] * c->size[i];
+    for (int d = 0; d < 3; d++) {
+      low[d] = fmin(low[d], c->position[i][d] - c->size[i] / 2);
+      high[d] = fmax(high[d], c->position[i][d] + c->size[i] / 2);
+    }
+  }
+  for (int d = 0; d < 3; d++)
+    box *= high[d] - low[d];
+  return count >= RESOLVED && filled > 0.1 * box;
+}
+
+/* Shows all resolved fragments, a projectile that is one body, and nine tenths of the rest along each axis, so
+ * that jets do not shrink the body. With fragments apart: all drawn discs. */
 static status choose_view(struct scene *s) {
   OWNED double *sorted = NULL;
   double all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, *view = s->view;
   TRY(memory_array(&sorted, s->discs, sizeof *sorted, "", NULL));
   memcpy(view, all, sizeof all);
+  const bool whole = is_body(s->cloud);
   for (size_t k = 0; k < s->discs; k++) {
     const struct picture_layout_disc *d = &s->disc[k];
     cover(all, d->x, d->y, d->radius);
-    if (s->look->view == PICTURE_APART || resolved(s, d->id))
+    if (s->look->view == PICTURE_APART || resolved(s, d->id) || (whole && s->cloud->part[d->id] == PICTURE_LEFT_OUT))
       cover(view, d->x, d->y, d->radius);
   }
   for (int axis = 0; axis < 2; axis++) {

@@ -307,6 +307,44 @@ static status curves(const char *name, size_t count, const struct picture_curve 
                         &(struct picture_words){"M_1/M", "seeds", "k (1/m^3)", "largest fraction"}, count, curve, NULL);
 }
 
+/* The frame holds all bodies before the run, also a projectile far from the target, which has no fragments; later only
+ * while it is one body, so that its spray does not shrink the target. */
+static void frame_holds_the_projectile(void **state) {
+  (void)state;
+  enum { EACH = 125, N = EACH + 2000 };
+  static double position[N][3], size[N], mass[N];
+  static int64_t fragment[N], part[N];
+  for (int spray = 0; spray < 2; spray++)
+    for (int few = 0; few < 2; few++)
+      for (int late = 0; late < 2; late++) {
+        const int balls = few ? 1 : EACH;
+        struct picture_cloud cloud = {.n = 2000 + (size_t)balls,
+                                      .position = position,
+                                      .size = size,
+                                      .mass = mass,
+                                      .fragment = fragment,
+                                      .part = part,
+                                      .engine = "sph",
+                                      .time = late ? 1e-6 : 0};
+        for (int k = 0; k < 2000 + balls; k++) {
+          const bool ball = k >= 2000;
+          const int side = ball ? 5 : 20, i = ball ? k - 2000 : k;
+          const double step = ball && spray ? 4 : 1;
+          position[k][0] = step * (i % side);
+          position[k][1] = step * (i / side % side);
+          position[k][2] = step * (i / side / side) + (ball ? 30 : 0);
+          size[k] = mass[k] = 1;
+          fragment[k] = ball ? -1 : 0;
+          part[k] = ball ? PICTURE_LEFT_OUT : PICTURE_CORE;
+        }
+        struct picture_frame frame = PICTURE_NO_FRAME;
+        const struct picture_look look = {.view = PICTURE_OUTSIDE, .axis = 1, .plane = NAN, .frame = &frame};
+        assert_int_equal(picture_particles(NULL, 480, &cloud, &look, NULL), STATUS_OK);
+        const bool holds = frame.view[3] > (few ? 30 : spray ? 46 : 34);
+        assert_int_equal(holds, !late || (!few && !spray));
+      }
+}
+
 /* gnuplot receives exactly the given numbers, and a gap stays a gap; the axis is logarithmic from a factor of 20. */
 static void curves_are_drawn(void **state) {
   (void)state;
@@ -600,10 +638,15 @@ int main(int count, char **arguments) {
       return 1;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fragments_are_drawn),     cmocka_unit_test(spectra_are_drawn),
-      cmocka_unit_test(maps_are_drawn),          cmocka_unit_test(profiles_are_drawn),
-      cmocka_unit_test(curves_are_drawn),        cmocka_unit_test(hostile_text_is_text),
-      cmocka_unit_test(missing_gnuplot_is_told), cmocka_unit_test(errors_leave_nothing),
+      cmocka_unit_test(fragments_are_drawn),
+      cmocka_unit_test(spectra_are_drawn),
+      cmocka_unit_test(maps_are_drawn),
+      cmocka_unit_test(profiles_are_drawn),
+      cmocka_unit_test(frame_holds_the_projectile),
+      cmocka_unit_test(curves_are_drawn),
+      cmocka_unit_test(hostile_text_is_text),
+      cmocka_unit_test(missing_gnuplot_is_told),
+      cmocka_unit_test(errors_leave_nothing),
       cmocka_unit_test(pixels_are_pinned),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
