@@ -280,6 +280,25 @@ function resolutionSentence(rows) {
   return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${verdict === 'known' ? 'up to ' : ''}${resolutionText({...most, verdict})}.${weak}`;
 }
 
+// Inputs that are no axis and change from dot to dot.
+function behind(at) {
+  const others = store().varied.map((axis) => axis.column_name).filter((column) => column !== state.x && column !== state.y && !(column in at));
+  return others.length ? ` From point to point ${others.map((column) => label(state.stores, column)).join(', ')} ${others.length > 1 ? 'change' : 'changes'}, too (clast sensitivity ranks the inputs).` : '';
+}
+
+// How much of the scatter between points one input explains: groups of its values, at most four of many values.
+export function effect(rows, column) {
+  const known = rows.filter((row) => row.mean !== null), values = [...new Set(known.map((row) => row[column]))];
+  const sorted = [...known].sort((a, b) => (a[column] < b[column] ? -1 : a[column] > b[column] ? 1 : 0)), groups = new Map();
+  sorted.forEach((row, i) => {
+    const group = values.length > 6 ? Math.floor((4 * i) / sorted.length) : row[column];
+    groups.set(group, [...(groups.get(group) ?? []), row.mean]);
+  });
+  const squares = (list) => list.reduce((sum, value) => sum + (value - list.reduce((a, b) => a + b, 0) / list.length) ** 2, 0);
+  const within = [...groups.values()].reduce((sum, list) => sum + squares(list), 0) / Math.max(1, known.length - groups.size);
+  return 1 - within / (squares(known.map((row) => row.mean)) / Math.max(1, known.length - 1) || 1);
+}
+
 export async function showPlane() {
   const figure = document.getElementById('plane-chart');
   const title = label(state.stores, state.quantity);
@@ -291,7 +310,7 @@ export async function showPlane() {
   const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);
     return;

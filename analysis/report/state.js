@@ -1,5 +1,6 @@
 // What the reader has chosen. It is kept in the address, so that a link shows the same and a page that loads itself
 // again stays as it was. An address is data: unknown words in it are dropped.
+import {cells, effect} from './plane.js';
 import {widestSpectrum} from './questions.js';
 import {ask} from './stores.js';
 
@@ -45,7 +46,12 @@ export function complete() {
   const {varied, quantities, facts, points} = store();
   const known = [...quantities.main, ...quantities.others, 'beta'];
   if (!known.includes(state.quantity)) state.quantity = known.includes(facts.default_quantity) ? facts.default_quantity : known[0];
-  const columns = varied.map((axis) => axis.column_name);
+  let columns = varied.map((axis) => axis.column_name);
+  if (columns.length > 2 && !columns.includes(state.x)) { // the page opens on the two inputs with the largest effect
+    const rows = cells(store(), state.quantity), of = new Map(columns.map((column) => [column, effect(rows, column)]));
+    const first = [...columns].sort((a, b) => of.get(b) - of.get(a)).slice(0, 2);
+    columns = [...columns.filter((column) => first.includes(column)), ...columns.filter((column) => !first.includes(column))];
+  }
   if (!columns.includes(state.x)) state.x = columns[0] ?? null;
   if ((state.y && !columns.includes(state.y)) || state.y === state.x || state.y === null)
     state.y = state.y === '' ? '' : columns.find((column) => column !== state.x) ?? null;

@@ -396,14 +396,12 @@ static void label_lines(struct plot *plot, const char *by) {
 }
 
 /* In a caption and on stderr: from point to point other inputs change, too, as in a sample or in two campaigns. */
-static void tell_changing(const struct quantity *quantity, char *caption, size_t size) {
+static void tell_changing(const struct quantity *quantity, const char *drawn, char *caption, size_t size) {
   char sentence[ASK_GROUP_POOLED + 100];
   charts_labels(quantity->changing, sentence, sizeof sentence);
   text_append(caption, size, "; from mark to mark %s changes, too", sentence);
-  fprintf(
-      stderr,
-      "clast: no line joins the points: from one to the next %s changes, too; `clast sensitivity` ranks the inputs\n",
-      sentence);
+  fprintf(stderr, "clast: %sfrom one to the next %s changes, too; `clast sensitivity` ranks the inputs\n", drawn,
+          sentence);
 }
 
 /* Takes the rows of a quantity as lines and draws them. */
@@ -443,7 +441,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);
   if (*quantity->changing)
-    tell_changing(quantity, caption, sizeof caption);
+    tell_changing(quantity, "no line joins the points: ", caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }
@@ -506,6 +504,8 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
     text_append(caption, sizeof caption, "; ~: weak, too few runs");
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);
+  if (*quantity->changing)
+    tell_changing(quantity, "behind the marks: ", caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, panels->count,
                      panels->count ? label : NULL, error);

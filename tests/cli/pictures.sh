@@ -349,6 +349,8 @@ expect 0 "$clast" run second.yaml -j 2 --quiet
 expect 0 "$clast" merge both.db small.db second.db
 expect 0 "$clast" plot both.db both.png -x strain
 says "from one to the next diameter of the body changes, too"
+expect 0 "$clast" map both.db both-map.png -x strain -y angle
+says "behind the marks: from one to the next diameter of the body changes, too"
 expect 0 "$clast" stats both.db --by strain
 says "from row to row the value of body.diameter changes, too"
 expect 0 "$clast" stats both.db --by strain,diameter
@@ -358,4 +360,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 124
+done_after 125

@@ -348,6 +348,21 @@ def slices(browser):
     done("a map of three inputs shows one value of the third")
 
 
+def opens_on(browser):
+    """Without a choice, the page of three inputs opens on the two with the largest effect: here not on the first two."""
+    browser.open(f"{three}.html")
+    wait_shown(browser, 1)
+    pair = {browser.js(f"document.querySelector('#choices [name={axis}]').value") for axis in "xy"}
+    with sqlite3.connect(f"{three}.db") as db:
+        columns = [row[0] for row in db.execute("SELECT column_name FROM axis ORDER BY path")]
+        spread = {c: [row[0] for row in db.execute(f"SELECT avg(largest_fraction_mean) FROM points GROUP BY {c}")] for c in columns}
+    ranked = sorted(columns, key=lambda c: max(spread[c]) - min(spread[c]))
+    assert pair == set(ranked[1:]) != set(columns[:2]), (pair, spread)
+    browser.js("const box = document.querySelector('#choices [name=y]'); box.value = ''; box.dispatchEvent(new Event('change')); 0")
+    browser.until("/From point to point .* change, too/.test(document.querySelector('#plane-chart figcaption').textContent)")
+    done("a page of three inputs opens on those with an effect, and tells what changes behind the dots")
+
+
 def side_by_side(browser):
     browser.open("two.html")
     wait_shown(browser, 1)
@@ -386,6 +401,7 @@ with Browser() as browser:
     widths(browser)
     marks(browser)
     slices(browser)
+    opens_on(browser)
     side_by_side(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]
