@@ -17,7 +17,9 @@ static status check(const struct command_line *line, struct error *error) {
       return status_fail(error, STATUS_USAGE, "RUN is a number (run_id in the view runs), got \"%.64s\"",
                          line->arguments[i]);
   if (line->count == 1 && (options->reason || options->undo))
-    return status_fail(error, STATUS_USAGE, "which run? `clast scatter %s` and `clast query` tell runs by run_id",
+    return status_fail(error, STATUS_USAGE,
+                       options->undo ? "which run? `clast exclude %s` lists those that are excluded, by run_id"
+                                     : "which run? The query of `clast exclude --help` on %s lists them by run_id",
                        line->arguments[0]);
   if (line->count > 1 && reason == options->undo)
     return status_fail(error, STATUS_USAGE,

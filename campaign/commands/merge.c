@@ -9,13 +9,19 @@ static status merge_source(struct store *store, const char *target, const char *
   *differing = 0;
   TRY(store_merge(store, source, &added, differing, error));
   fprintf(stderr, "%s: %" PRId64 " run%s added\n", source, added, text_plural(added));
-  const int64_t excluded = store_merge_excluded(store);
+  const int64_t excluded = store_merge_excluded(store, false), here = store_merge_excluded(store, true);
   if (excluded)
     fprintf(stderr,
             "clast: warning: %s excludes %" PRId64
             " run%s that count%s in %s: `clast exclude %s` lists them with their "
             "reasons, `clast exclude %s RUN --reason TEXT` excludes one here, too\n",
             source, excluded, text_plural(excluded), excluded == 1 ? "s" : "", target, source, target);
+  if (here)
+    fprintf(stderr,
+            "clast: %" PRId64
+            " run%s of %s stay%s excluded in %s: `clast exclude %s` lists them, `clast exclude %s RUN "
+            "--undo` counts one again\n",
+            here, text_plural(here), source, here == 1 ? "s" : "", target, target, target);
   if (*differing)
     fprintf(stderr,
             "clast: warning: %s: %" PRId64 " run%s that %s has too gave other results there; those of %s were kept. "

@@ -39,7 +39,7 @@ status scheduler_announce(struct scheduler *scheduler, const struct campaign *ca
 }
 
 status scheduler_show_input(struct store *store, const struct field *row, struct error *error) {
-  const char *unit = row->unit && strcmp(row->unit, "rad") == 0 ? "deg" : "";
+  const char *unit = row->flags & FIELD_PERCENT ? "%" : row->unit && strcmp(row->unit, "rad") == 0 ? "deg" : "";
   return store_add_axis(store, row, unit, error);
 }
 

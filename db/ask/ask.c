@@ -248,8 +248,10 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
       store, error,
       "SELECT column_name, unit, %s, path, place >= 2e18 FROM (SELECT *, ifnull((SELECT min(iif(%s, 2e18, 0) + "
       "campaign_id * 1000 + key) FROM campaign, json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j WHERE "
-      "j.value = axis.path), 1e18) AS place FROM axis) ORDER BY %spath",
-      written ? "written_unit" : "NULL", CAMPAIGN_IS_ROUND, written ? "place, " : "");
+      "j.value = axis.path), 1e18) AS place FROM axis%s) ORDER BY %spath",
+      written ? "written_unit" : "NULL", CAMPAIGN_IS_ROUND,
+      written ? " UNION ALL SELECT 'scene', 'scene', NULL, NULL, '', 1.5e18 WHERE " STORE_HAS_SCENES : "",
+      written ? "place, " : "");
   for (*count = 0; *count < most && answer_next(&answer); ++*count) {
     read_column(&answer, &axes[*count]);
     snprintf(axes[*count].word, sizeof axes->word, "%s", answer_text(&answer, 3));

@@ -316,7 +316,9 @@ static status find_pooled(struct store *store, const struct names *axes, char po
   return take_first_names(&answer, pooled);
 }
 
-static const char axes_sql[] = "SELECT column_name, path FROM axis ORDER BY path";
+static const char
+    axes_sql[] = "SELECT column_name, path FROM axis UNION ALL SELECT 'scene', 'scene' WHERE " STORE_HAS_SCENES
+                 " ORDER BY path";
 static const char quantities_sql[] =
     "SELECT c.name FROM pragma_table_info('runs') c WHERE c.type IN ('REAL', 'INTEGER') AND c.name NOT IN "
     "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "

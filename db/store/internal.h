@@ -216,6 +216,8 @@ struct store_kind { /* fills result_<engine> */
   struct digest *names; /* digest_names_make() */
 };
 
+/* SQL: have the points with runs several scenes? Then the scene is an axis, in the column `scene` of the views. */
+#define STORE_HAS_SCENES "(SELECT count(DISTINCT scene_name) FROM point JOIN point_total USING (point_id)) > 1"
 /* SQL: did clast write the document of this campaign, a round of a study or a search (converge, find, fit)? */
 #define CAMPAIGN_IS_ROUND "ifnull(document LIKE '# Written by clast %', 0)"
 
@@ -233,9 +235,9 @@ struct store {
   struct digest_tables tables;
   int64_t lowest_bin, highest_bin; /* range covered by table bin; lowest > highest: none */
 
-  char chosen[512];       /* what questions see: ask_choose(); "": all */
-  int64_t left_out;       /* points: ask_choice_left_out() */
-  int64_t excluded_there; /* of the last merge: store_merge_excluded() */
+  char chosen[512];    /* what questions see: ask_choose(); "": all */
+  int64_t left_out;    /* points: ask_choice_left_out() */
+  int64_t excluded[2]; /* of the last merge: store_merge_excluded() */
 
   double waits_since, waited_at, wait_until; /* s, monotonic: for another program that holds the file */
   bool in_batch, broken;

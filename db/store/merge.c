@@ -278,10 +278,11 @@ static status merge_paths(struct store *store, const char *source, const struct 
 static status copy_missing(struct store *store, const char *source, struct merged *merged, int64_t *differing,
                            struct error *error) {
   TRY(find_runs(store->db, merged, error));
-  TRY(sql_integer(store->db,
-                  "SELECT count(*) FROM other.run b CROSS JOIN main.run a USING (identity) WHERE a.surplus < 2 AND "
-                  "b.surplus > 1",
-                  0, &store->excluded_there, error));
+  for (int here = 0; here < 2; here++)
+    TRY(sql_integerf(store->db, &store->excluded[here], error,
+                     "SELECT count(*) FROM other.run b CROSS JOIN main.run a USING (identity) WHERE (a.surplus > 1, "
+                     "b.surplus > 1) = (%d, %d)",
+                     here, !here));
   if (merged->common) /* Runs of the same identity must have the same bits. A difference comes from another machine or a
                          bug */
     TRY(sql_integer(store->db,
@@ -361,15 +362,15 @@ static status merge(struct store *store, const char *source, struct inspection *
   return STATUS_OK;
 }
 
-int64_t store_merge_excluded(const struct store *store) {
-  return store->excluded_there;
+int64_t store_merge_excluded(const struct store *store, bool here) {
+  return store->excluded[here];
 }
 
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
   struct inspection inspection = {.source = source};
   *added = 0;
   *differing = 0;
-  store->excluded_there = 0;
+  store->excluded[0] = store->excluded[1] = 0;
   const status result = merge(store, source, &inspection, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "

@@ -174,8 +174,9 @@ status store_check_run(struct store *store, int64_t run_id, bool *whole, struct 
  * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report
  * them. Merging twice adds nothing. */
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error);
-/* Runs that count in `store`, and that the source of the last merge excludes: the caller must report them, too. */
-int64_t store_merge_excluded(const struct store *store);
+/* Runs that the source of the last merge excludes and `store` (the target) does not, or (`here`) the other way round:
+ * the caller must report them, too. */
+int64_t store_merge_excluded(const struct store *store, bool here);
 /* Writes a compact copy (VACUUM INTO); refuses to overwrite. */
 status store_export(struct store *store, const char *path, struct error *error);
 

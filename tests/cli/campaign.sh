@@ -218,11 +218,20 @@ derived soft disc-explosion "$disc, grain.young_modulus: 1 GPa"
 derived stiff disc-explosion "$disc, grain.young_modulus: 3 GPa"
 derived brisk disc-explosion "$disc, grain.young_modulus: 3 GPa, fidelity.time_step: 0.3 us"
 for rock in 8 9; do derived "weibull$rock" basalt-sphere "fidelity.particles: 300, stop.end_time: 4 us, target.material.weibull.m: $rock"; done
+for strain in 2 3; do derived strain$strain disc-explosion "$disc, threshold.strain: $strain %"; done
 derived usual basalt-sphere "fidelity.particles: 300, stop.end_time: 4 us"
 expect 0 "$clast" merge followed.db soft.db stiff.db
 same "$(axes followed.db)" grain.young_modulus "axes of campaigns of other grains"
 expect 0 "$clast" merge chosen.db stiff.db brisk.db
 same "$(axes chosen.db)" fidelity.time_step "axes with a chosen step"
+# stores of several scenes: the scene is an axis; inputs that differ are shown as people write them
+expect 0 "$clast" merge scenes.db weibull8.db strain2.db strain3.db
+expect 0 "$clast" stats scenes.db --by scene --csv
+same "$(cut -d, -f1,4 out | tr '\n' ' ')" "scene,points basalt-sphere,1 disc-explosion,2 " "means by scene"
+expect 0 "$clast" stats scenes.db --by threshold.strain
+prints "strain [%]"
+expect 0 "$clast" estimates scenes.db
+prints "basalt-sphere"
 expect 0 "$clast" merge rock.db weibull8.db weibull9.db
 same "$(axes rock.db)" target.material.weibull.m "axes of two rocks"
 expect 0 "$clast" stats rock.db --by target.material.weibull.m --csv
@@ -280,4 +289,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 81
+done_after 86

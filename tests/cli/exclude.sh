@@ -54,6 +54,10 @@ expect 64 "$clast" exclude one.db 999 --reason "none"
 says "there is no run 999"
 expect 64 "$clast" exclude one.db 1 --undo
 says "run 1 is not excluded"
+expect 64 "$clast" exclude one.db --undo
+says "\`clast exclude one.db\` lists those that are excluded, by run_id"
+expect 64 "$clast" exclude one.db --reason "none"
+says "The query of \`clast exclude --help\` on one.db lists them by run_id"
 expect 0 "$clast" exclude one.db
 silent out
 says "no run is excluded"
@@ -156,6 +160,10 @@ same "$(number copy.db 'select excluded from run where run_id = 1')" "the camera
 expect 0 "$clast" merge all.db one.db
 same "$(number all.db 'select count(*) from runs where excluded is not null')" 1 "in the merged store"
 expect 0 "$clast" check all.db
+"$clast" exclude one.db 1 --undo 2>err || fail "undo"
+expect 0 "$clast" merge all.db one.db
+says "1 run of one.db stays excluded in all.db"
+"$clast" exclude one.db 1 --reason "the camera saw a flaw" 2>err || fail "exclude"
 expect 0 "$clast" exclude all.db 1 --undo
 expect 0 "$clast" merge all.db one.db
 same "$(number all.db 'select count(*) from runs where excluded is not null')" 0 "the store's own word"
@@ -202,4 +210,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 98
+done_after 101
