@@ -166,7 +166,7 @@ static bool find_value(const struct table *table, const char *name, size_t *valu
 
 static enum role role_of(const struct table *table, const char *name, size_t *value) {
   if (table->asked)
-    return PLAIN;
+    return MEAN;
   if (find_value(table, name, value))
     return ERROR;
   for (size_t i = 0; i < RULES; i++)
@@ -230,7 +230,7 @@ void table_key(struct table *table, const struct ask_column *input) {
   struct column *column = &table->columns[table->column_count - 1];
   free(column->head);
   column->head = heading(table, *input->word && !table->asked ? input->word : input->name, column->unit);
-  column->role = KEY;
+  column->role = table->asked ? MEAN : KEY;
   column->input = true;
   column->of_studies = input->of_studies;
   column->factor = input->factor;
@@ -386,7 +386,8 @@ static void leave_out_inputs(struct table *table, size_t room) {
     width += column->input ? column->width + GAP : 0;
     numbered |= strcmp(column->name, "point_id") == 0 || strcmp(column->name, "run_id") == 0;
   }
-  for (size_t c = table->column_count; numbered && c-- > 0 && width > room / 3 && total_width(table) > room;) {
+  for (size_t c = table->column_count;
+       numbered && !table->asked && c-- > 0 && width > room / 3 && total_width(table) > room;) {
     struct column *column = &table->columns[c];
     column->left_out |= column->of_studies;
     width -= column->of_studies ? column->width + GAP : 0;
@@ -400,7 +401,7 @@ static void lay_out(struct table *table) {
     struct column *column = &table->columns[c];
     column->left_out = column->role == ERROR ||
                        (table->format != TABLE_ALL && (column->role == RARE || is_quiet(table, c)));
-    if (c == 0 && column->role == PLAIN)
+    if (c == 0 && (column->role == PLAIN || table->asked))
       column->role = KEY;
     measure(table, c);
   }

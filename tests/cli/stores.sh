@@ -91,6 +91,12 @@ done
 expect 0 "$clast" estimates studied.db
 says "not shown (--all): "; says "end_time [s]"
 
+# Every column of a question in SQL is shown, in parts where they are too wide.
+expect 0 "$clast" query charged.db "select run_id, charge_energy$(printf ", 123456789012345 as 'wide_%s'" $(seq 20)), grain_spacing from runs"
+for column in run_id charge_energy wide_1 wide_20 grain_spacing; do tr -d '\n ' <out | grep -q ${column%_*} || fail "the table lacks $column"; done
+prints "wide_20"; prints "0.01069"; grep -q "not shown" err && fail "a column of SQL is left out"
+[ "$(wc -L <out)" -le 100 ] || fail "wider than 100 columns"
+
 # SQL that asks for too much is a fault of the SQL.
 for sql in 'select randomblob(1e18)' 'select zeroblob(2000000000)' "select printf('%.*c', 2000000000, 'x')" "select format('%2000000000d', 1)" "select replace(hex(zeroblob(1e7)), '0', hex(zeroblob(100)))" "select 1 from run limit 'a'"; do
   expect 64 "$clast" query formula.db "$sql"
@@ -236,4 +242,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 81
+done_after 82
