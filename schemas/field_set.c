@@ -149,6 +149,9 @@ static status parse_real(const struct field *row, const char *text, struct field
     came->number = strtod(text, NULL) * written.factor;
     return STATUS_OK;
   }
+  const char *got = code && may_be_off ? strstr(inner.message, ", got ") : NULL;
+  if (got)
+    return status_fail(error, code, "%s: %.*s, or off%s", row->path, (int)(got - inner.message), inner.message, got);
   if (code)
     return status_fail(error, code, "%s: %s%s", row->path, inner.message, may_be_off ? " (or off)" : "");
   return STATUS_OK;

@@ -353,7 +353,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   largest_axis_short REAL, -- [1] Shortest over longest axis of the same ellipsoid. 1 is a sphere.
   largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
-  second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
+  second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. 180 deg is the antipode. Off when that has fewer than 100 particles.
   fragments_shaped INTEGER, -- [1] Number of fragments of at least 60 particles, without the largest: those whose shapes count.
   fragments_b_over_a REAL, -- [1] Middle over longest length of fragments of at least 60 particles, without the largest: the mean over the fragments. Lengths are the axes of the solid ellipsoid with the fragment's moments of inertia. Off without such a fragment.
   fragments_c_over_a REAL, -- [1] Shortest over longest length of the same fragments.
@@ -1353,7 +1353,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'rebound', '1', 'Collision: speed o
 
 INSERT INTO column_doc VALUES ('result_sph', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. 180 deg is the antipode. Off when that has fewer than 100 particles.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is only one.', 1);
 
@@ -1687,7 +1687,7 @@ INSERT INTO column_doc VALUES ('runs', 'run_id', NULL, 'number of the run in thi
 
 INSERT INTO column_doc VALUES ('runs', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.', 0);
+INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. 180 deg is the antipode. Off when that has fewer than 100 particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'second_fraction', '1', 'Mass of the second largest fragment over the total mass, M_2/M.', 0);
 

@@ -468,7 +468,9 @@ static void note(cairo_t *cairo, const struct scene *s, double left, double y, d
     text_append(text, sizeof text, "Fragments with %.3g %% of the mass are hidden: see the view apart. ",
                 100 * s->hidden);
   if (s->left_out)
-    text_append(text, sizeof text, "%zu particles are beyond the frame.", s->left_out);
+    text_append(text, sizeof text,
+                s->left_out == 1 ? "%zu particle is beyond the frame." : "%zu particles are beyond the frame.",
+                s->left_out);
   picture_canvas_note(cairo, left, y, width, 0.9 * font, text);
 }
 

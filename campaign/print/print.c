@@ -445,7 +445,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     if (nothing)
       fprintf(stderr,
               "clast: no distance: from there on there is no simulated fragment, or only one measured %s. The heaviest "
-              "measured %s %.3g %s, the heaviest simulated one %.3g %s\n",
+              "measured %s %.3g %s, the heaviest simulated fragment has %.3g %s\n",
               measured->single ? "fragment" : "class", measured->single ? "fragment has" : "class begins at",
               measured->n ? measured->mass[measured->n - 1] : 0, measured->bodies ? "kg" : kg, heaviest, kg);
     for (size_t i = 0; !measured->weighed && i < measured->n; i++) {

@@ -54,7 +54,7 @@ static const struct field rows[] = {
     REAL(second.mass, "kg", 0, .doc = "Mass of the second largest fragment; off when there is only one."),
     REAL(second.angle, "rad", 0,
          .doc = "Impact: angle between the directions from the centre of mass to the point of impact and to the second "
-                "largest fragment. pi is the antipode. Off when that has fewer than 100 particles.",
+                "largest fragment. 180 deg is the antipode. Off when that has fewer than 100 particles.",
          .source = "BA95 section 5.2"),
     RESULT_COUNT(fragments.shaped, shapes.shaped,
                  .doc = "Number of fragments of at least 60 particles, without the largest: those whose shapes count."),
