@@ -407,6 +407,12 @@ static status make(struct fit *f, struct sensitivity_point *index, struct error 
       for (size_t i = 0; means && i <= k; i++)
         index[i].of_means = (struct sensitivity_share){NAN, NAN, NAN};
   }
+  /* Shares of one variance: two seeds alone may leave the seeds' share open up to 1, but no input's. */
+  struct sensitivity_share *seed = &index[k].of_runs;
+  for (size_t i = 0; i < k && isfinite(seed->high); i++)
+    seed->high = fmin(seed->high, 1 - index[i].of_runs.low); /* NaN is no bound */
+  if (isfinite(seed->high))
+    *seed = (struct sensitivity_share){fmin(seed->estimate, seed->high), fmin(seed->low, seed->high), seed->high};
   rank_indices(k, index);
   return STATUS_OK;
 }

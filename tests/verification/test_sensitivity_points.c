@@ -466,6 +466,14 @@ static void ranks_are_those_of_the_means(void **state) {
   assert_true(found[0].of_runs.low < found[1].of_runs.high); /* they overlap */
   assert_true(found[0].of_means.low > found[1].of_means.high);
   assert_true(found[0].last_rank == 1 && found[1].first_rank == 2);
+  /* Two seeds that differ little: no more is theirs than the first input leaves, though two values bound no variance.
+   */
+  for (size_t j = 0; j < p.n; j++)
+    for (size_t r = 0; r < 2; r++)
+      p.value[2 * j + r] = 4 * p.u[2 * j] + (r ? 0.1 : -0.1) + 0.2 * normal_of(uniform(&p));
+  assert_int_equal(sensitivity_points(&given, found, &needed, &error), STATUS_OK);
+  assert_true(found[0].of_runs.low > 0.5 && found[2].of_runs.estimate < 0.1);
+  assert_true(found[2].of_runs.high <= 1 - found[0].of_runs.low);
 }
 
 static void not_told(void **state) {
