@@ -42,7 +42,7 @@ static const struct field rows[] = {
     ROW("seeds.until.half_width", until_half_width, FIELD_REAL, "1", .number = 0.01, .minimum = 0, .maximum = HUGE_VAL,
         .flags = FIELD_ABOVE_MINIMUM | FIELD_ANY_UNIT,
         .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this: a "
-               "value of the quantity (17 MPa; a bare number is in SI units), or a share of its mean (5 %). Judged on "
+               "value of the quantity (17 MPa), or a share of its mean (5 %). Judged on "
                "fixed prefixes of replicate numbers.",
         .source = "Chow & Robbins 1965"),
     ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,
@@ -56,8 +56,8 @@ static const struct field rows[] = {
     ROW("accuracy.within", accuracy_within, FIELD_REAL, "1", .number = NAN, .minimum = 0, .maximum = HUGE_VAL,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_ANY_UNIT,
         .doc = "Choose settings and number of seeds so that the error of resolution and the 95 % interval of the mean "
-               "together are at most this, at the least processor time: a value of the quantity (17 MPa; a bare number "
-               "is in SI units), or a share of its mean (5 %). The choice comes from a study in the store (`clast "
+               "together are at most this, at the least processor time: a value of the quantity with its "
+               "unit (17 MPa), or a share of its mean (5 %). The choice comes from a study in the store (`clast "
                "converge`). off: settings and seeds are as written."),
     ROW("accuracy.processor_time", accuracy_time, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e12,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,

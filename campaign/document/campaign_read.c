@@ -196,12 +196,19 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   }
 }
 
+/* Is there a value, right or wrong? */
+static bool is_given(document_node *mapping, const char *key) {
+  document_node *value = key_of(mapping, key);
+  const char *text = value ? document_scalar(value) : NULL;
+  return value && !(text && strcmp(text, "off") == 0);
+}
+
 /* `accuracy` decides the seeds itself. */
 static void check_accuracy(document_node *root, struct campaign *campaign) {
   document_node *accuracy = document_key(root, "accuracy"), *seeds = key_of(document_key(root, "seeds"), "per_point");
   if (!accuracy)
     return;
-  if (field_is_off(campaign->accuracy_within) == field_is_off(campaign->accuracy_time))
+  if (is_given(accuracy, "within") == is_given(accuracy, "processor_time"))
     document_report(accuracy, "accuracy",
                     "give one of 'within', the largest error of the result, and 'processor_time', which the campaign "
                     "may cost");
@@ -237,14 +244,20 @@ static const char *main_quantity(const struct campaign *campaign) {
   return scene_headline(campaign->scene);
 }
 
-/* A width with a unit that is not per cent: it is the unit of the quantity. */
+/* A width that is not per cent has the unit of the quantity. A text without a number or a unit is told already. */
 static void check_width(document_node *width, const char *path, const char *quantity, const struct campaign *campaign) {
   struct error error;
   struct field_value ignored;
   bool of_outcome;
   const char *text = width ? document_scalar(width) : NULL;
   const struct field *row = campaign_quantity(campaign->scene->kind, quantity, &of_outcome, &error);
-  if (!text || !row || strchr(text, '%') || strcmp(text, "off") == 0 || unit_is_bare(text))
+  const struct field any_unit = {.path = path,
+                                 .unit = "1",
+                                 .minimum = 0,
+                                 .maximum = HUGE_VAL,
+                                 .flags = FIELD_ANY_UNIT | FIELD_ABOVE_MINIMUM};
+  if (!text || !row || strchr(text, '%') || strcmp(text, "off") == 0 ||
+      field_parse(&any_unit, text, &ignored, &error) != STATUS_OK)
     return;
   const struct field in_unit = {.path = path,
                                 .unit = row->unit ? row->unit : "1",
