@@ -95,6 +95,6 @@ done
 ok "explain knows every word"
 expect 65 "$clast" explain windw
 says "did you mean window"
-sed -i 's/seeds: .*/seeds: {until: {quantity: energy_kinetic, half_width: 1e9}}/' tiny.yaml
+sed -i 's|seeds: .*|seeds: {until: {quantity: energy_kinetic, half_width: 1e9 J/m}}|' tiny.yaml
 expect 0 "$clast" plan tiny.yaml --no-trial
 done_after 33
