@@ -181,6 +181,27 @@ static void tell_missing(const struct snapshots *s, double time) {
             (long long)written, (long long)s->count, digit * (floor(time / digit) + 1));
 }
 
+/* Files of an earlier run with this name, which had more snapshots. Programs that read all NAME_*.hdf would mix them.
+ */
+static void tell_older(const struct snapshots *s) {
+  enum { LOOKED_AT = 1000 }; /* numbers after the last one */
+  char path[PATH], first[PATH] = "";
+  int64_t older = 0;
+  for (int64_t k = 0; k < s->count + LOOKED_AT; k++) {
+    path_of(s, k, path);
+    if ((k < s->count && !isnan(s->time[k])) || access(path, F_OK) != 0)
+      continue;
+    if (older++ == 0)
+      memcpy(first, path, sizeof first);
+  }
+  if (older)
+    fprintf(
+        stderr,
+        "clast: warning: %lld snapshot%s of an earlier run lie%s beside these, from %s on: %s.hdf.series lists those "
+        "of this run alone\n",
+        (long long)older, text_plural(older), older == 1 ? "s" : "", first, s->name);
+}
+
 /* ---- the run ---- */
 
 enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, even with a million particles */
@@ -227,6 +248,8 @@ static status compute(const struct scene *scene, const struct one_run_options *o
     fputs("\r\033[K", stderr);
   if (code == STATUS_OK && !options->quiet)
     tell_missing(&watch.snapshots, result->outcome.time);
+  if (code == STATUS_OK && watch.snapshots.count)
+    tell_older(&watch.snapshots);
   free(watch.snapshots.time);
   return code;
 }

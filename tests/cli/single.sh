@@ -82,6 +82,7 @@ expect 0 "$clast" simulate disc-explosion --seed 7 "${quiet[@]}" --set stop.end_
 ok "a snapshot before the end is not judged as an end"
 sleep 1 # HDF5 knows seconds
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields later.h5 --snapshots 1
+says "4 snapshots of an earlier run lie beside these, from disc-explosion_000001.hdf on"
 cmp -s end.h5 later.h5 || fail "the fields of the same run differ from one second to the next"
 cmp -s end.h5 disc-explosion_000000.hdf || fail "a single snapshot is not one of the end"
 time=$(python -c "import h5py; print('%.4g' % (1e3 * float(h5py.File('end.h5')['run'].attrs['time'])))") # s
