@@ -170,8 +170,9 @@ static bool is_of_value(document_node *mapping, const char *key) {
   return text && strchr(text, '%');
 }
 
-/* Checks `seeds`: a fixed number, or a rule with a maximum. */
-static void check_seeds(document_node *root, struct campaign *campaign) {
+/* Checks `seeds`: a fixed number, or a rule with a maximum. A document that a store keeps was read by the program of
+ * its day: what has run with it is not refused. */
+static void check_seeds(document_node *root, bool stored, struct campaign *campaign) {
   document_node *seeds = key_of(root, "seeds");
   document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
   if (until && per_point)
@@ -185,8 +186,8 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   campaign->until_of_value = is_of_value(until, "half_width");
   if (!key_of(until, "half_width"))
     document_report(until, "seeds.until", "'half_width' is missing: give the half width that ends a point");
-  if (campaign->until_minimum > campaign->maximum ||
-      !sample_could_stop((size_t)campaign->maximum, campaign->until_level)) {
+  if (!stored && (campaign->until_minimum > campaign->maximum ||
+                  !sample_could_stop((size_t)campaign->maximum, campaign->until_level))) {
     const long long most = campaign->maximum, least = campaign_replicates_of_rule(campaign);
     document_report(
         max ? max : until, "seeds.max",
@@ -266,7 +267,7 @@ static void check_width(document_node *width, const char *path, const char *quan
   document_value(width, &in_unit, &ignored);
 }
 
-static void check_quantities(document_node *root, struct campaign *campaign) {
+static void check_quantities(document_node *root, bool stored, struct campaign *campaign) {
   char *const follow[] = {campaign->until_quantity, campaign->accuracy_quantity};
   if (!document_key(root, "quantity"))
     snprintf(campaign->quantity, sizeof campaign->quantity, "%s", main_quantity(campaign));
@@ -290,9 +291,11 @@ static void check_quantities(document_node *root, struct campaign *campaign) {
   if (until)
     check_quantity(until, "seeds.until.quantity", campaign->until_quantity, campaign);
   document_node *half_width = key_of(key_of(key_of(root, "seeds"), "until"), "half_width");
-  check_width(half_width, "seeds.until.half_width", campaign->until_quantity, campaign);
-  check_width(key_of(document_key(root, "accuracy"), "within"), "accuracy.within", campaign->accuracy_quantity,
-              campaign);
+  if (!stored) { /* older programs took a width without a unit */
+    check_width(half_width, "seeds.until.half_width", campaign->until_quantity, campaign);
+    check_width(key_of(document_key(root, "accuracy"), "within"), "accuracy.within", campaign->accuracy_quantity,
+                campaign);
+  }
   if (half_width && !campaign->until_of_value && campaign->until_half_width >= 1 &&
       is_share_of(campaign, campaign->until_quantity))
     document_report(
@@ -367,7 +370,7 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   document_node *set = document_key(root, "set");
   read_keep(document_key(root, "keep"), campaign);
   read_design(document_key(root, "design"), campaign);
-  check_seeds(root, campaign);
+  check_seeds(root, stored, campaign);
   check_accuracy(root, campaign);
   check_store(root, campaign);
 
@@ -391,7 +394,7 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
     varied = campaign_vary_read(vary, folder, campaign);
   const bool good = campaign_read_set(set, folder, campaign, campaign->scene, stored,
                                       "set here and varied in `vary`; leave one of them out");
-  check_quantities(root, campaign);
+  check_quantities(root, stored, campaign);
   if (plain && varied && good && (stored || check_rocks(file ? file : vary, campaign)))
     check_points(root, campaign);
   else if (good && set && scene_check(campaign->scene, &error) != STATUS_OK) /* not only the errors of `vary` */

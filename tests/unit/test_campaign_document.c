@@ -389,6 +389,21 @@ static void examples_are_ready_to_run(void **state) {
   assert_int_equal(seen, 13);
 }
 
+/* Rules that are younger than a store do not refuse what has run: `clast retry` reads its document. */
+static void stored_rules_of_seeds_are_read(void **state) {
+  (void)state;
+  static const char text[] = "name: x\nscene: disc-explosion\nquantity: energy_input\n"
+                             "seeds: {until: {half_width: 5, minimum: 10}, max: 20}\n";
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "ends no point before 50 runs"));
+  assert_non_null(strstr(error.message, "half_width"));
+  assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
+  assert_true(campaign->maximum == 20 && campaign->until_half_width == 5);
+  campaign_free(campaign);
+}
+
 /* Documents and scenes of stores from before units were required. */
 static void stored_numbers_are_si(void **state) {
   (void)state;
@@ -454,6 +469,7 @@ int main(void) {
       cmocka_unit_test(defaults_and_units),
       cmocka_unit_test(every_kind_of_axis),
       cmocka_unit_test(stored_numbers_are_si),
+      cmocka_unit_test(stored_rules_of_seeds_are_read),
       cmocka_unit_test(axes_are_shown_with_units),
       cmocka_unit_test(values_that_do_not_fit_make_no_point),
       cmocka_unit_test(independent_seeds_follow_the_point),
