@@ -47,7 +47,7 @@ def case(engine, number):
     with open(f"{name}-measured.yaml", "w") as out:
         out.write("name: twin\nsource: a run of the program\nshots:\n  - measured:\n")
         for quantity, error in measured.items():
-            value = row[quantity] + draw.gauss(0, error)
+            value = min(max(row[quantity] + draw.gauss(0, error), 0), 1)  # a share, as a laboratory would give it
             out.write(f"      - {{quantity: {quantity}, value: {value}, error: {error}, resolution: 0}}\n")
     with open(f"{name}.yaml", "w") as out:
         laws = "".join(f"  {path}: {{{law}: [{low}{unit}, {high}{unit}]}}\n" for path, (law, low, high, unit) in unknown.items())
