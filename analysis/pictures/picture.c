@@ -362,7 +362,10 @@ status picture_map(const struct picture_page *page, const struct picture_words *
                    size_t count, const struct picture_tile *tiles, size_t panels, const char *const *panel,
                    struct error *error) {
   if (count == 0)
-    return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", page->path);
+    return status_fail(
+        error, STATUS_USAGE,
+        "%s: no point has a number on both axes of the map: take two inputs that the same points have (-x, -y)",
+        page->path);
   for (size_t i = 0; i < count; i++)
     if (!isfinite(tiles[i].x) || !isfinite(tiles[i].y))
       return status_fail(error, STATUS_USAGE, "%s: a point of the map is not on its axes", page->path);

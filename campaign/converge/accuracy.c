@@ -411,13 +411,21 @@ static status read_study(struct finding *finding, struct store *store, const str
 }
 
 static status read_points(struct finding *finding, struct store *store, struct error *error) {
+  const struct campaign *campaign = finding->campaign;
+  struct accuracy *accuracy = finding->accuracy;
   CAMPAIGN_WALK walk = {0};
-  TRY(campaign_walk_begin(&walk, finding->campaign, error));
+  TRY(campaign_walk_begin(&walk, campaign, error));
+  if (finding->studied && design_points(walk.design) > 1)
+    text_append(accuracy->studied, sizeof accuracy->studied, "the scene with its own values of what varies");
   for (int i = 0; !finding->studied && i < LOOKED_AT && campaign_walk_next(&walk); i++) {
     struct error ignored;
+    char inputs[256];
     SCENE scene = campaign_walk_scene(&walk, &ignored);
     if (scene)
       TRY(read_study(finding, store, scene, error));
+    if (scene && finding->studied && design_points(walk.design) > 1)
+      text_append(accuracy->studied, sizeof accuracy->studied, "point %d, %s", i + 1,
+                  design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, inputs, sizeof inputs));
   }
   return STATUS_OK;
 }
@@ -439,8 +447,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
     return no_study(campaign, path, store_path, error);
   TRY(code);
   TRY(read_study(&finding, store, campaign->scene, error));
-  if (!finding.studied)
-    TRY(read_points(&finding, store, error));
+  TRY(read_points(&finding, store, error));
   if (accuracy->count == 0)
     return no_study(campaign, path, store_path, error);
   choose(accuracy);
@@ -743,6 +750,11 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
               "%s \xc2\xb1 %.2g%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
               campaign->accuracy_quantity, option->total, unit, more, resolution_of(option), unit, more, chosen,
               option->seeds, cost);
+  if (*accuracy->studied)
+    words_print(out, before,
+                "this is known of %s; the others have errors and means of their own, which may be wider: `clast "
+                "estimates` tells them after the run",
+                accuracy->studied);
   if (!in_time)
     return;
   bool open[2];

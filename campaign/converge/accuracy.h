@@ -48,6 +48,7 @@ struct accuracy {
   char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
   char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
   char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
+  char studied[300];  /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
   const char *path;   /* the campaign's file with --set and --store of the command (option_words()); borrowed */
   size_t reference;   /* the option with the smallest error; costs are relative to it */
 };

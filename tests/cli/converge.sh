@@ -459,6 +459,9 @@ expect 0 "$clast" converge each.yaml --set threshold.strain='3 %' --knob time_st
 same "$(grep -c 'quantity largest_fraction' out)" 1 "points that differ"
 says "1 point, 1 knob: the first 3 seeds of all levels take"
 prints "from its limit, equal seeds compared"
+{ cat each.yaml && echo 'accuracy: {within: 0.9}'; } >wide.yaml
+expect 0 "$clast" plan wide.yaml --store one.db
+prints "this is known of the scene with its own values of what varies; the others have errors"
 expect 0 "$clast" converge each.yaml --knob grains --seeds 2 --within off
 same "$(grep -c 'is left out: ' err) $(grep 'is left out: ' err | sort -u | wc -l)" "2 2" "remarks on levels, each once"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
@@ -475,4 +478,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 121
+done_after 122

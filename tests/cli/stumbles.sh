@@ -9,7 +9,7 @@ for word in cube brick block box sphere ball cylinder rod ring disc steel stone 
 done
 ok "everyday words"
 # Heads of tables lead to their meaning, not to a path that ends so.
-for word in best bias level sd ref cpu_s corr cutoff_p pairs runs_as_far q05 below sd_seeds number_density too_wide warned; do
+for word in best bias level sd ref cpu_s corr cutoff_p pairs runs_as_far q05 below sd_seeds number_density rule_unmet warned; do
   "$clast" explain "$word" >out 2>err || fail "explain $word"
   [ "$(head -1 out)" = "$word" ] || fail "explain $word answers with $(head -1 out)"
 done
