@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Twins with the engines (fit_twins.md): inputs drawn from the priors, one specimen computed with them and a seed of its own,
-# and `clast fit` on what it shows. CLAST_FULL=1: 100 cases of each engine (CLAST_SEEDS=n: n); quick form: 2 discs.
+# and `clast fit` on what it shows. CLAST_FULL=1: 200 discs and 20 spheres (CLAST_SEEDS=n: n of each); quick form: 2 discs.
 set -euo pipefail
 clast=$(realpath "$1")/clast
 work=$(mktemp -d "$1/fit-engines-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-cases=${CLAST_SEEDS:-${CLAST_FULL:+100}}
-exec /usr/bin/python3 - "$clast" "${cases:-2}" "${CLAST_FULL:-}${CLAST_SEEDS:-}" <<'PY'
+exec /usr/bin/python3 - "$clast" "${CLAST_SEEDS:-0}" "${CLAST_FULL:-}${CLAST_SEEDS:-}" <<'PY'
 import json, math, os, random, subprocess, sys
 
-clast, cases, full = sys.argv[1], int(sys.argv[2]), bool(sys.argv[3])
+clast, asked, full = sys.argv[1], int(sys.argv[2]), bool(sys.argv[3])
+
+WHOLE = {"dem": 200, "sph": 20}  # cases of the full form
 
 # Of each engine: scene, what is set, unknown inputs with the law, its ends and the unit, what is measured with its error.
 ENGINES = {
@@ -65,11 +66,12 @@ def case(engine, number):
 
 good = True
 for engine in ENGINES if full else ["dem"]:
+    cases = asked or (WHOLE[engine] if full else 2)
     results = [case(engine, number) for number in range(cases)]
     for path in results[0]:
         held = sum(r[path][0] for r in results)
         kept = sum(r[path][1] for r in results) / cases
         print(f"{engine} {path}: held in {held} of {cases}, interval {kept:.2f} of the prior's", flush=True)
-        good &= 85 <= held <= 95 if cases == 100 else held >= 0.5 * cases
+        good &= 0.85 * cases <= held <= 0.95 * cases if cases >= 100 else held >= 0.5 * cases
 sys.exit(not good)
 PY
