@@ -16,11 +16,13 @@ static struct sample_moments moments_of(const struct seed_scatter_runs *runs, si
 }
 
 /* A step of Fisher's scoring towards the greatest likelihood of the s^2 of all points under chi-square, from the line
- * in `out`: a weighted least squares of (s^2 - found) / found on 1 and x, with a prior on the slopes. Runs that are
- * equal, by chance or since nothing breaks there, show that the variance is small; the logarithm of s^2 would take them
- * for certain and draw the line to 0. */
+ * in `out`: a weighted least squares of ln(found) + (s^2 - found) / found on 1 and x, with a prior on the slopes. Runs
+ * that are equal, by chance or since nothing breaks there, show that the variance is small; the logarithm of s^2 would
+ * take them for certain and draw the line to 0. A twentieth of a degree of freedom of each point has the mean variance:
+ * without it, many points of equal runs at one end turn the line without end. */
 static void improve_line(const struct seed_scatter_runs *runs, double pooled, struct seed_scatter *out) {
   enum { MOST = INFERENCE_INPUTS + 1 };
+  static const double LENT = 0.05; /* degrees of freedom with the mean variance, of each point */
   static const double SHARE = 0.5; /* of a step of the scoring, which may overshoot */
   const size_t n = runs->inputs + 1;
   double normal[MOST * MOST] = {0}, right[MOST] = {0}, change[MOST] = {0}, row[MOST], most = 1;
@@ -28,9 +30,9 @@ static void improve_line(const struct seed_scatter_runs *runs, double pooled, st
     const struct sample_moments m = moments_of(runs, i);
     if (m.n < 2)
       continue;
-    const double half = (double)(m.n - 1) / 2; /* the weight, too */
+    const double half = ((double)(m.n - 1) + LENT) / 2; /* the weight, too */
     const double found = seed_scatter_variance(out, runs->x + i * runs->inputs);
-    const double y = log(found / pooled) + m.squares / (2 * half) / found - 1;
+    const double y = log(found / pooled) + (m.squares + LENT * pooled) / (2 * half) / found - 1;
     row[0] = 1;
     memcpy(row + 1, runs->x + i * runs->inputs, runs->inputs * sizeof *row);
     for (size_t a = 0; a < n; a++) {

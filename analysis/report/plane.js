@@ -292,9 +292,13 @@ export function effect(rows, column) {
   const sorted = [...known].sort((a, b) => (a[column] < b[column] ? -1 : a[column] > b[column] ? 1 : 0)), groups = new Map();
   sorted.forEach((row, i) => {
     const group = values.length > 6 ? Math.floor((4 * i) / sorted.length) : row[column];
-    groups.set(group, [...(groups.get(group) ?? []), row.mean]);
+    if (!groups.has(group)) groups.set(group, []);
+    groups.get(group).push(row.mean);
   });
-  const squares = (list) => list.reduce((sum, value) => sum + (value - list.reduce((a, b) => a + b, 0) / list.length) ** 2, 0);
+  const squares = (list) => {
+    const mean = list.reduce((a, b) => a + b, 0) / list.length;
+    return list.reduce((sum, value) => sum + (value - mean) ** 2, 0);
+  };
   const within = [...groups.values()].reduce((sum, list) => sum + squares(list), 0) / Math.max(1, known.length - groups.size);
   return 1 - within / (squares(known.map((row) => row.mean)) / Math.max(1, known.length - 1) || 1);
 }

@@ -243,7 +243,8 @@ static const struct condition *mark_of_level(const struct campaign *campaign, co
       SCENE scene = scene_copy(level);
       snprintf(finer, sizeof finer, "%.6g", ldexp(strtod(own, NULL), -h));
       if (ladder_turn(other, scene, finer, &ignored) == STATUS_OK && !mark_of(campaign, scene))
-        snprintf(remedy, size, "%s='%s %s'", other->inputs[0].path, finer, unit_of(campaign, other));
+        snprintf(remedy, size, "%s='%s%s%s'", other->inputs[0].path, finer, *unit_of(campaign, other) ? " " : "",
+                 unit_of(campaign, other));
     }
   }
   return mark;
@@ -555,7 +556,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
   const double seeds = ceil((double)accuracy->n * factor * factor);
   char text[UNIT_TEXT];
   if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
-    if (middle < accuracy->within)
+    if (middle < accuracy->within && error > 0)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
     else
       text_append(next, size,

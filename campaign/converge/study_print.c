@@ -276,7 +276,7 @@ static void print_seen(const struct convergence_limit_row *limit, const struct s
           limit->limit.low, limit->limit.high, limit->order.value, limit->order.low, limit->order.high);
   char text[UNCERTAINTY_TEXT];
   for (size_t l = 0; l < found->count; l++)
-    if (found->rows[l].base && found->rows[l].resolution > 0)
+    if (found->rows[l].base && found->rows[l].resolution > 0 && !found->rows[l].open)
       fprintf(out, "%s * is at most %s from its limit, equal seeds compared; ", found->rows[l].setting,
               study_show_error(found->rows[l].resolution, found->rows[l].open, text));
 }

@@ -279,7 +279,7 @@ static void tell_size(struct rounds *rounds) {
     const struct study_ladder *ladder = &study->ladder[i];
     const bool new_point = i == 0 || ladder->base != study->ladder[i - 1].base;
     points += new_point;
-    knobs++;
+    knobs += points == 1; /* every point has the same */
     for (size_t l = 0; l < ladder->levels.count; l++)
       if (!ladder->left_out[l] && (new_point || !ladder->levels.level[l].base)) { /* all knobs share the own level */
         for (int64_t s = 0; s < seeds; s++)
@@ -295,7 +295,8 @@ static void tell_size(struct rounds *rounds) {
   if (isfinite(study->rule.seconds))
     snprintf(most, sizeof most, "; it ends after %.4g s (--seconds)", study->rule.seconds);
   fprintf(stderr, "clast: %zu %s, %zu %s: the first %lld seeds of all levels take %lld more runs, about %s%s\n", points,
-          points == 1 ? "point" : "points", knobs, knobs == 1 ? "knob" : "knobs in all", (long long)seeds,
+          points == 1 ? "point" : "points", knobs,
+          points == 1 ? (knobs == 1 ? "knob" : "knobs") : (knobs == 1 ? "knob each" : "knobs each"), (long long)seeds,
           (long long)runs, time, most);
 }
 

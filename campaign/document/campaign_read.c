@@ -188,7 +188,10 @@ static void check_seeds(document_node *root, bool stored, struct campaign *campa
     document_report(until, "seeds.until", "'half_width' is missing: give the half width that ends a point");
   if (!stored && (campaign->until_minimum > campaign->maximum ||
                   !sample_could_stop((size_t)campaign->maximum, campaign->until_level))) {
-    const long long most = campaign->maximum, least = campaign_replicates_of_rule(campaign);
+    const long long most = campaign->maximum;
+    long long least = campaign->until_minimum;
+    while (!sample_could_stop((size_t)least, campaign->until_level))
+      least++;
     document_report(
         max ? max : until, "seeds.max",
         "seeds.until ends no point before %lld runs, whatever its interval, and max is %lld: give max: %lld "

@@ -205,7 +205,7 @@ static status print_bins(const struct find *find, struct error *error) {
   if (holds && is_none(find))
     words_print(stderr, "",
                 "clast: a row's interval is of its runs alone, and one holds the level. The answer is of all runs: "
-                "neighbouring rows tell a row's scatter, too, and the mean is taken to keep rising or to keep falling");
+                "it takes the mean to rise or to fall all along, and the scatter to change slowly from row to row");
   return STATUS_OK;
 }
 

@@ -151,7 +151,7 @@ static void print_summary(const struct driver_summary *summary, const char *stor
 /* Points that ended at seeds.max before seeds.until was met. The rule asks for more runs than a narrow interval needs.
  */
 static void warn_unmet(const struct campaign *campaign, const struct driver_summary *summary) {
-  char asked[FIELD_TEXT_SIZE], width[UNCERTAINTY_TEXT + 96] = "is not known", runs[64] = "more";
+  char asked[FIELD_TEXT_SIZE], width[UNCERTAINTY_TEXT + 96] = "is not known", runs[64] = "how many is not known";
   const uint64_t unmet = summary->points_cap_reached;
   const double one = campaign->until_of_value ? 100 / fabs(summary->widest_mean) : 1;
   if (unmet == 0)

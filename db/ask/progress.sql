@@ -3,7 +3,7 @@
 -- clocks are set back at times. Without earlier forms, the rounds of one search or study are one line, in which a point
 -- that several of them have counts once.
 WITH last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome,
-  facts ->> '$.points_unmet' AS rule_unmet,
+  coalesce(facts ->> '$.points_unmet', facts ->> '$.points_too_wide') AS rule_unmet,
   (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) AS command FROM session GROUP BY campaign_id),
 planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,
   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),

@@ -262,7 +262,7 @@ expect 0 "$clast" run narrow.yaml --store wide.db --quiet
 says "narrow enough, but the rule takes more runs before it trusts one"
 sed 's/max: 60/max: 40/' wide.yaml >short.yaml
 expect 65 "$clast" plan short.yaml --no-trial
-says "seeds.until ends no point before 50 runs, whatever its interval, and max is 40: give max: 50 or more, or per_point: 40"
+says "seeds.until ends no point before 41 runs, whatever its interval, and max is 40: give max: 41 or more, or per_point: 40"
 sed -i 's/half_width: 0.0001/half_width: 50 %/' wide.yaml
 expect 0 "$clast" run wide.yaml --quiet
 grep -q "seeds.max" err && fail "a rule that is met is warned of"

@@ -305,9 +305,9 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "seeds: {max: 100}\n", "only `until` has a maximum");
   bad(HEAD "seeds: {until: {quantity: largest_fraction}}\n", "'half_width' is missing");
   bad(HEAD "seeds: {until: {half_width: 0.1}, max: 20}\n",
-      "seeds.until ends no point before 50 runs, whatever its interval, and max is 20: give max: 50 or more, or "
+      "seeds.until ends no point before 41 runs, whatever its interval, and max is 20: give max: 41 or more, or "
       "per_point: 20 and no until");
-  bad(HEAD "seeds: {until: {half_width: 0.1, minimum: 10}, max: 40}\n", "no point before 50 runs");
+  bad(HEAD "seeds: {until: {half_width: 0.1, minimum: 10}, max: 40}\n", "no point before 41 runs");
   campaign_free(good(HEAD "seeds: {until: {half_width: 0.1, minimum: 2, batch: 3}, max: 41}\n")); /* 20 t(40) = 40.4 */
   bad(HEAD "seeds: {until: {half_width: 8, quantity: largest_fraction}}\n", "8 per cent of the mean is written '8 %'");
   campaign_free(good(HEAD "seeds: {until: {half_width: 8, quantity: fragment_count}}\n"));
@@ -397,7 +397,7 @@ static void stored_rules_of_seeds_are_read(void **state) {
   struct campaign *campaign = NULL;
   struct error error = {0};
   assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "ends no point before 50 runs"));
+  assert_non_null(strstr(error.message, "ends no point before 41 runs"));
   assert_non_null(strstr(error.message, "half_width"));
   assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
   assert_true(campaign->maximum == 20 && campaign->until_half_width == 5);
