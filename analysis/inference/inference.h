@@ -39,7 +39,8 @@ struct seed_scatter {
 };
 
 /* Fits the variance: the line of greatest likelihood of the points' s^2 under chi-square, with a prior of width 1 on
- * each slope. shared_seeds false: `shared` is 0. STATUS_CONTENT: no point has two or more runs. */
+ * each slope and a small part of the mean variance in every s^2. shared_seeds false: `shared` is 0. STATUS_CONTENT: no
+ * point has two or more runs. */
 status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
                         struct error *error);
 double seed_scatter_variance(const struct seed_scatter *scatter, const double *x);

@@ -204,8 +204,8 @@ static status print_bins(const struct find *find, struct error *error) {
               any_weak ? "; ~: weak, too few runs" : "");
   if (holds && is_none(find))
     words_print(stderr, "",
-                "clast: a row's interval is of its runs alone, and one holds the level. The answer is of all runs: "
-                "it takes the mean to rise or to fall all along, and the scatter to change slowly from row to row");
+                "clast: the interval of one row holds the level; it comes from the runs of that row alone. The answer "
+                "comes from all runs. It assumes that the mean only rises or only falls");
   return STATUS_OK;
 }
 

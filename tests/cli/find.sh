@@ -85,7 +85,7 @@ grep -q "holds the level" err && fail "no mean is above 1"
 # No crossing is decided from all runs; the interval of a row's own runs may hold the level, which is said.
 expect 0 "$clast" find disc.yaml --level 0.97 --store end.db
 tr '\n' ' ' <out | grep -qF "no crossing in the bracket (95 %, from all $(number end.db 'select count(*) from run') runs)." || fail "how sure is not told"
-says "a row's interval is of its runs alone, and one holds the level"
+says "the interval of one row holds the level; it comes from the runs of that row alone"
 expect 66 "$clast" find disc-explosion --level 0.5
 says "disc-explosion is a built-in scene; a campaign is a file"; one_error
 expect 0 "$clast" find disc.yaml --level 1 --json

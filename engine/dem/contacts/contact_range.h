@@ -152,8 +152,8 @@ LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *
       const lanes_i along = (lanes_abs(from) <= same) & (lanes_abs(to) <= same);
       from = lanes_select(along, lanes_all(own ? -1.0 : 1.0), from);
       to = lanes_select(along, lanes_all(own ? -1.0 : 1.0), to);
-      const lanes_d crossing = lanes_rounded(
-          from / (from - to)); /* infinite where both are outside and equal: nothing is left then */
+      /* Infinite where both are outside and equal: nothing is left then. */
+      const lanes_d crossing = lanes_rounded(from / (from - to));
       enter = lanes_max(enter, lanes_mask(from > 0.0, crossing));
       leave = lanes_min(leave, lanes_select(to > 0.0, crossing, lanes_all(1.0)));
     }
