@@ -10,6 +10,8 @@ import {ask, exponents, has, newest} from './stores.js';
 import {inUnit, label, marked, number, plural, rangeOf, shell, shellFile, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
+const MOST_LINES = 8; // of `clast plot`
+const NONE = 'does not apply'; // of a value
 
 function statistics(from, quantity) {
   if (quantity === 'beta') return exponents(from);
@@ -60,7 +62,7 @@ export function cells(from, quantity) {
 }
 
 function placeOf(column, value) {
-  if (value === null || value === undefined) return 'does not apply';
+  if (value === null || value === undefined) return NONE;
   return typeof value === 'number' ? Number(inUnit(state.stores, column, value).toPrecision(7)) : String(value);
 }
 
@@ -264,11 +266,12 @@ function commandOf(at) {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
   const from = shellFile(store().name);
   if (!state.x) return `clast stats ${from} --quantity ${quantity}`;
-  const numeric = (column) => plane.rows.some((row) => typeof row[column] === 'number');
   const sql = Object.entries(at).map(([column, value]) => `${column} IS ${typeof value === 'string' ? `'${value.replace(/'/g, "''")}'` : value}`).join(' AND ');
-  const where = sql && ` --where ${shell(sql)}`;
-  if (state.y && numeric(state.x) && numeric(state.y)) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}${where}`;
-  return `clast plot ${from} plot.png -x ${state.x}${state.y ? ` --by ${state.y}` : ''} -Q ${quantity}${where}`;
+  const where = sql && ` --where ${shell(sql)}`, has = (column) => (row) => row[column] !== NONE, is = (column) => (row) => typeof row[column] === 'number';
+  if (state.y && plane.shown.filter(is(state.x)).some(is(state.y))) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}${where}`;
+  const lines = new Set(plane.shown.filter(has(state.x)).map((row) => row[state.y]));
+  if (lines.size > 0 && lines.size <= MOST_LINES) return `clast plot ${from} plot.png -x ${state.x}${state.y ? ` --by ${state.y}` : ''} -Q ${quantity}${where}`;
+  return quantity === 'beta' ? `clast estimates ${from}${where}` : `clast stats ${from} --by ${state.x}${state.y ? `,${state.y}` : ''} -Q ${quantity}${where}`;
 }
 
 const WHAT_ERRORS = '±, which the table of points has too, is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';

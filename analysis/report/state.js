@@ -46,15 +46,16 @@ export function complete() {
   const {varied, quantities, facts, points} = store();
   const known = [...quantities.main, ...quantities.others, 'beta'];
   if (!known.includes(state.quantity)) state.quantity = known.includes(facts.default_quantity) ? facts.default_quantity : known[0];
-  let columns = varied.map((axis) => axis.column_name);
-  if (columns.length > 2 && !columns.includes(state.x)) { // the page opens on the two inputs with the largest effect
-    const rows = cells(store(), state.quantity), of = new Map(columns.map((column) => [column, effect(rows, column)]));
-    const first = [...columns].sort((a, b) => of.get(b) - of.get(a)).slice(0, 2);
-    columns = [...columns.filter((column) => first.includes(column)), ...columns.filter((column) => !first.includes(column))];
+  const columns = varied.map((axis) => axis.column_name), ofAll = columns.filter((column) => points.every((point) => point[column] !== null));
+  let first = ofAll.length ? ofAll : columns; // an input of one scene of two is no axis of both
+  if (first.length > 2 && !columns.includes(state.x)) { // the page opens on the two inputs with the largest effect
+    const rows = cells(store(), state.quantity), of = new Map(first.map((column) => [column, effect(rows, column)]));
+    const two = [...first].sort((a, b) => of.get(b) - of.get(a)).slice(0, 2);
+    first = first.filter((column) => two.includes(column));
   }
-  if (!columns.includes(state.x)) state.x = columns[0] ?? null;
+  if (!columns.includes(state.x)) state.x = first[0] ?? null;
   if ((state.y && !columns.includes(state.y)) || state.y === state.x || state.y === null)
-    state.y = state.y === '' ? '' : columns.find((column) => column !== state.x) ?? null;
+    state.y = state.y === '' ? '' : first.find((column) => column !== state.x) ?? (columns.length > 1 ? '' : null);
   if (state.chosen.size === 0 && points.length > 0) {
     const widest = ask(store(), widestSpectrum)[0]?.point_id; // a spectrum of dust alone shows nothing
     const first = points.find((point) => point.point_id === widest) ?? points.find((point) => point.n > 0) ?? points[0];

@@ -51,7 +51,7 @@ void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size);
 #define QUANTITY_AXIS_OPTION(type_, member_)                                                                           \
   OPTION_ROW_TEXT("x", 'x', "AXIS", type_, member_, NULL,                                                              \
                   .doc = "Varied input on the horizontal axis: a path or its unique ending. Without it the command "   \
-                         "takes the first varied inputs.")
+                         "takes the first varied inputs that all points have.")
 #define QUANTITY_OPTION(type_, member_)                                                                                \
   OPTION_ROW_TEXT(                                                                                                     \
       "quantity", 'Q', "NAME", type_, member_, NULL,                                                                   \

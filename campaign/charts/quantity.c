@@ -1,6 +1,7 @@
 /* A quantity over one or two varied inputs: reads it from groups of runs, or fits the exponent of each point, and draws
  * it as the lines of `clast plot` or the tiles of `clast map`. */
 #include <ctype.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,13 +170,61 @@ static status read_exponents(struct store *store, struct quantity *quantity, enu
   return answer_end(&points);
 }
 
-/* Where the user named no input (all NULL): takes the first `most` that were varied, and names them on stderr. A chart
- * needs `least` of them. */
-static status choose_axes(struct store *store, size_t least, size_t most, const char *inputs[AXES],
+/* What a chart can take as its axes where the user names none: `most` inputs, of which it needs `least`. */
+struct axes_wanted {
+  size_t least, most;
+  int64_t separate; /* values that the input of --by may have */
+};
+
+/* Can it be the input number `place` of a chart? All points have it. On an axis, their values are all numbers; a plot
+ * also takes words. */
+static bool suits(const struct axes_wanted *wanted, size_t place, const struct ask_group_values *values) {
+  if (place >= wanted->least)
+    return values->given == values->points && values->kinds > 1 && values->kinds <= wanted->separate;
+  return values->numbers == values->points ||
+         (wanted->least < 2 && values->given == values->points && values->numbers == 0 && values->kinds <= MOST_PLACES);
+}
+
+/* No inputs suit all points: names the one, or the two, that most points have. */
+static status none_suits(struct store *store, const struct axes_wanted *wanted, size_t count,
+                         const struct ask_column *axes, struct error *error) {
+  const struct ask_column *best[2] = {axes, axes};
+  struct ask_group_values values, of = {.points = 0};
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = wanted->least < 2 ? i : i + 1; k < (wanted->least < 2 ? i + 1 : count); k++) {
+      TRY(ask_group_values(store, axes[i].name, axes[k].name, &values, error));
+      if (values.numbers > of.numbers) {
+        of = values;
+        best[0] = &axes[i];
+        best[1] = &axes[k];
+      }
+    }
+  if (of.numbers == 0)
+    return status_fail(
+        error, STATUS_USAGE,
+        wanted->least < 2 ? "no varied input suits an axis: `clast stats STORE --by %s` has the means"
+                          : "no point has numbers of two varied inputs: `clast plot` draws a quantity over one (-x %s)",
+        axes->word);
+  if (wanted->least < 2)
+    return status_fail(error, STATUS_USAGE,
+                       "no varied input is one of all points: -x %s draws the %" PRId64 " of %" PRId64
+                       " points that have it",
+                       best[0]->word, of.numbers, of.points);
+  return status_fail(error, STATUS_USAGE,
+                     "no two varied inputs are numbers in all points: -x %s -y %s draws the %" PRId64 " of %" PRId64
+                     " points that have both",
+                     best[0]->word, best[1]->word, of.numbers, of.points);
+}
+
+/* Where the user named no input (all NULL): takes the first ones that were varied and that suit all points, and names
+ * them on stderr. An input with one value comes after the others. */
+static status choose_axes(struct store *store, const struct axes_wanted *wanted, const char *inputs[AXES],
                           struct ask_column axes[LIMITS_AXES_OF_TABLE], struct error *error) {
   static const char *const option[] = {"--x", "--y"}, *const by = "--by";
   char chosen[600] = "";
-  size_t count = 0;
+  size_t count = 0, taken = 0, last = 0;
+  const size_t least = wanted->least;
+  bool used[LIMITS_AXES_OF_TABLE] = {false};
   if (inputs[0] && (least < 2 || inputs[1]))
     return STATUS_OK;
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, axes, &count, error));
@@ -188,11 +237,22 @@ static status choose_axes(struct store *store, size_t least, size_t most, const 
                        count ? "only %s was varied: `clast plot` draws a quantity over one input"
                              : "no input was varied: `clast scatter` shows the runs, `clast spectrum` their fragments",
                        axes[0].word);
-  for (size_t i = 0; i < count && i < most; i++) {
-    inputs[i] = axes[i].word;
-    text_append(chosen, sizeof chosen, " %s %s", i < least ? option[i] : by, axes[i].word);
-  }
-  fprintf(stderr, "clast: drawn over the first inputs that were varied:%s\n", chosen);
+  for (int constant = 0; constant < 2; constant++)
+    for (size_t i = 0; i < count && taken < wanted->most; i++) {
+      struct ask_group_values values;
+      TRY(ask_group_values(store, axes[i].name, NULL, &values, error));
+      if (used[i] || (values.kinds < 2) != constant || !suits(wanted, taken, &values))
+        continue;
+      used[i] = true;
+      last = i > last ? i : last;
+      inputs[taken] = axes[i].word;
+      text_append(chosen, sizeof chosen, " %s %s", taken < least ? option[taken] : by, axes[i].word);
+      taken++;
+    }
+  if (taken < least)
+    return none_suits(store, wanted, count, axes, error);
+  fprintf(stderr, "clast: drawn over the first inputs that were varied%s:%s\n",
+          last < taken ? "" : " and suit all points", chosen);
   return STATUS_OK;
 }
 
@@ -451,7 +511,7 @@ status quantity_plot(struct store *store, const char *x, const char *by, const c
   __attribute__((cleanup(release_plot))) struct plot plot = {0};
   struct ask_column axes[LIMITS_AXES_OF_TABLE];
   const char *inputs[AXES] = {x, by};
-  TRY(choose_axes(store, 1, 2, inputs, axes, error));
+  TRY(choose_axes(store, &(struct axes_wanted){1, 2, MOST_LINES}, inputs, axes, error));
   TRY(read_quantity(store, inputs, name, false,
                     "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another "
                     "one), and one quantity",
@@ -581,7 +641,7 @@ status quantity_map(struct store *store, const char *x, const char *y, const cha
   OWNED struct picture_tile *tile = NULL;
   struct ask_column axes[LIMITS_AXES_OF_TABLE];
   const char *inputs[AXES] = {x, y, by};
-  TRY(choose_axes(store, 2, AXES, inputs, axes, error));
+  TRY(choose_axes(store, &(struct axes_wanted){2, AXES, MOST_PANELS}, inputs, axes, error));
   TRY(read_quantity(store, inputs, name, true,
                     "a map needs two different inputs (--x, --y), at most a third one (--by) and one quantity",
                     &quantity, error));

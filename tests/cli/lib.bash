@@ -74,6 +74,15 @@ YAML
   local line
   for line in "$@"; do echo "$line" >>"$name.yaml"; done
 }
+# Campaigns of two scenes, which share body.diameter alone, and their runs in one store: two_scenes STORE.
+two_scenes() {
+  tiny burst && tiny crash
+  sed -i 's/^set: .*/set: {stop.end_time: 1 ms}/; s/threshold.strain: .*/charge.energy: [1 kJ\/m, 2 kJ\/m]/; s/threshold.angle: .*/body.diameter: [7 cm, 8 cm]/' burst.yaml
+  sed -i 's/disc-explosion/disc-collision/; s/^set: .*/set: {body.diameter: 8 cm, stop.end_time: 1 ms}/; s/threshold.strain: .*/collision.speed: [40 m\/s, 90 m\/s]/; /threshold.angle/d' crash.yaml
+  expect 0 "$clast" run burst.yaml --quiet
+  expect 0 "$clast" run crash.yaml --quiet
+  expect 0 "$clast" merge "$1" burst.db crash.db
+}
 number() { "$clast" query "$1" "$2" --csv | tail -n 1; } # number STORE SQL
 # The deterministic content of a store: the same for any way of computing it.
 bits() { "$clast" export "$1" "$1.bits" --bits 2>>err || fail "no bits of $1"; [ -s "$1.bits" ] || fail "empty bits"; cat "$1.bits"; }

@@ -195,6 +195,25 @@ expect 0 "$clast" map small.db first_map.svg
 says "varied: --x strain --y angle"
 expect 64 "$clast" plot small.db m.png --by angle
 says "--x"
+# An axis that nobody named is an input of all points: of two scenes in one store, none of one scene alone. Lines and panels
+# have few values.
+two_scenes scenes.db
+expect 64 "$clast" map scenes.db m.png
+says "no two varied inputs are numbers in all points: -x energy -y diameter draws the 4 of 6 points that have both"
+expect 0 "$clast" map scenes.db scenes.svg -x energy -y diameter
+expect 64 "$clast" map scenes.db m.png -x energy -y speed
+says "take two inputs that the same points have"
+expect 0 "$clast" plot scenes.db scenes.svg
+says "varied and suit all points: --x diameter --by scene"
+tiny nine
+sed -i 's/, charge.energy: 2 kJ.m//; s/per_point: 3/per_point: 1/; s/threshold.strain: .*/threshold.strain: [2 %, 3 %, 4 %, 5 %, 6 %, 7 %, 8 %, 9 %, 10 %]/; s/^vary:/vary:\n  charge.energy: [1 kJ\/m, 2 kJ\/m]/' nine.yaml
+expect 0 "$clast" run nine.yaml --quiet
+expect 0 "$clast" plot nine.db nine.svg
+says "varied and suit all points: --x energy --by angle"
+expect 0 "$clast" map nine.db nine.svg
+says "varied: --x energy --y strain --by angle"
+expect 0 "$clast" map nine.db nine.svg --where 'threshold_angle < 0.05'
+says "varied: --x energy --y strain"
 printf 'name: lone\nscene: disc-explosion\nset: {body.diameter: 5 cm}\nquantity: fragment_count\nseeds: 3\n' >lone.yaml
 expect 0 "$clast" run lone.yaml --quiet
 expect 64 "$clast" plot lone.db m.png
@@ -360,4 +379,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 125
+done_after 136

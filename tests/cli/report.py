@@ -363,6 +363,24 @@ def opens_on(browser):
     done("a page of three inputs opens on those with an effect, and tells what changes behind the dots")
 
 
+def scenes(browser):
+    """A store of two scenes opens on the input that both have, and offers only commands that work."""
+    browser.open("scenes.html")
+    wait_shown(browser, 1)
+    of = lambda axis: browser.js(f"document.querySelector('#choices [name={axis}]').value")
+    assert (of("x"), of("y")) == ("body_diameter", ""), (of("x"), of("y"))
+    offered = set()
+    for x in ("body_diameter", "charge_energy", "collision_speed"):
+        for y in {"", "body_diameter", "charge_energy", "collision_speed"} - {x}:
+            browser.open(f"scenes.html#x={x}&y={y}&points=1")
+            wait_shown(browser, 1)
+            offered.add(text(browser, "#plane-chart code"))
+    assert {command.split()[1] for command in offered} == {"map", "plot", "stats"}, offered
+    for command in offered:
+        subprocess.run([clast, *shlex.split(command)[1:]], check=True, capture_output=True)
+    done("a page of two scenes offers commands that work")
+
+
 def side_by_side(browser):
     browser.open("two.html")
     wait_shown(browser, 1)
@@ -402,6 +420,7 @@ with Browser() as browser:
     marks(browser)
     slices(browser)
     opens_on(browser)
+    scenes(browser)
     side_by_side(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]

@@ -256,9 +256,11 @@ JS
   sed -i 's/, charge.energy: 2 kJ.m//; s/^vary:/vary:\n  charge.energy: [1 kJ\/m, 2 kJ\/m]/' three.yaml
   expect 0 "$clast" run three.yaml -j 2 --quiet
   expect 0 "$clast" report three.db
+  two_scenes scenes.db
+  expect 0 "$clast" report scenes.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 47
+  done_after 51
 else
   done_after 37
 fi
