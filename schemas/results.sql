@@ -688,9 +688,11 @@ of_point AS (SELECT point_id, results_version, quantity, error, diverges, open F
     r.open FROM convergence s JOIN of_study r USING (base_point_id, results_version, quantity)
   WHERE r.named AND s.knob = 'settings' AND NOT s.base),
 largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max(diverges) AS diverges,
-    max(open) AS open, iif(quantity IN (SELECT quantity FROM share), coalesce((SELECT max(mean, 1 - mean)
-      FROM convergence c WHERE c.point_id = p.point_id AND c.results_version = p.results_version
-      AND c.quantity = p.quantity AND mean IS NOT NULL ORDER BY n DESC LIMIT 1), 1), 9e999) AS most
+    max(open) AS open, iif(quantity IN (SELECT quantity FROM share), coalesce((SELECT max(r.mean, 1 - r.mean)
+      FROM convergence c JOIN convergence r USING (base_point_id, results_version, quantity, knob)
+      WHERE c.point_id = p.point_id AND c.results_version = p.results_version AND c.quantity = p.quantity
+      AND r.mean IS NOT NULL AND iif(c.mean IS NULL, r.reference, r.point_id = c.point_id) -- finer than any run: as the finest
+      ORDER BY c.mean IS NULL, r.n DESC LIMIT 1), 1), 9e999) AS most
   FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
 SELECT point_id, results_version, quantity, min(error, most) AS half_width,
   CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN NOT open THEN 'known'

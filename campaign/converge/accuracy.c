@@ -46,8 +46,9 @@ struct finding {
   char marks[ACCURACY_MARKS];    /* of the level that becomes an option */
   struct convergence_row finest; /* the reference of the last knob that has one, for levels finer than it */
   bool studied, share;
-  int unstudied; /* knobs of resolution with levels, but without the scene's own one */
-  int rank;      /* of the level that gave the mean */
+  int unstudied;   /* knobs of resolution with levels, but without the scene's own one */
+  double own_mean; /* with the scene's own settings: of the knob with most seeds there */
+  int64_t own_n;
 };
 
 /* How far a result with this mean can move. */
@@ -121,14 +122,9 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
-  /* Levels that the user named need not include the scene's own settings: then it is the mean of the finest one. */
-  const int rank = row->n == 0 ? 0 : row->base ? 2 : row->reference;
-  if (rank > finding->rank || (rank > 0 && rank == finding->rank && row->n > finding->accuracy->n)) {
-    finding->rank = rank;
-    finding->accuracy->mean = row->mean;
-    finding->accuracy->n = row->n;
-    finding->accuracy->within = finding->campaign->accuracy_within *
-                                (finding->campaign->accuracy_of_value ? fabs(row->mean) : 1);
+  if (row->base && row->n > finding->own_n) {
+    finding->own_mean = row->mean;
+    finding->own_n = row->n;
   }
   const bool resolution = knob && knob->group == KNOB_RESOLUTION, ran = strcmp(finding->ran, row->knob) == 0;
   const bool moves = row->resolution != 0; /* 0 where no run of the knob differs */
@@ -167,6 +163,12 @@ static double resolution_of(const struct accuracy_option *option) {
   return option->error + (option->beyond > 0 ? option->beyond : 0);
 }
 
+/* The same against what is allowed, where an accuracy is given. */
+static double need_of(const struct accuracy_option *option) {
+  const double error = resolution_of(option);
+  return isnan(option->within) ? error : option->within > 0 ? error / option->within : HUGE_VAL;
+}
+
 /* As many seeds as the time of a point allows, and no more than make the interval 1 % of the error. */
 static int64_t seeds_in(const struct accuracy_option *option, double point_s) {
   const int64_t useful = accuracy_seeds(option->deviation, 0.01 * resolution_of(option));
@@ -188,13 +190,16 @@ static status add_option(struct finding *finding, const struct convergence_row *
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
+  option->mean = option->own ? finding->own_mean : row->mean;
+  option->n = option->own ? finding->own_n : row->n;
+  option->most = most_of(finding->share, option->mean);
+  option->within = finding->campaign->accuracy_within * (finding->campaign->accuracy_of_value ? fabs(option->mean) : 1);
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
-    option->beyond = isnan(finding->beyond) ? (double)NAN
-                                            : fmin(finding->beyond, most_of(finding->share, row->mean) - option->error);
+    option->beyond = isnan(finding->beyond) ? (double)NAN : fmin(finding->beyond, option->most - option->error);
   const double middle = fabs(isnan(row->distance) ? row->bias : row->distance);
   option->middle = row->resolution > 0 && middle < row->resolution ? middle / row->resolution : 1;
   option->deviation = row->deviation;
-  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, accuracy->within - resolution_of(option))
+  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, option->within - resolution_of(option))
                                            : seeds_in(option, accuracy->point_s);
   option->total = total_of(option, option->seeds);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
@@ -336,7 +341,7 @@ static status take_option(struct finding *finding, const struct convergence_row 
 static int by_total(const void *a, const void *b) {
   const struct accuracy_option *x = a, *y = b;
   const double p = x->seeds ? x->total : HUGE_VAL, q = y->seeds ? y->total : HUGE_VAL;
-  const double error_x = resolution_of(x), error_y = resolution_of(y);
+  const double error_x = need_of(x), error_y = need_of(y);
   return p == q ? (error_x > error_y) - (error_x < error_y) : (p > q) - (p < q);
 }
 
@@ -345,7 +350,7 @@ static int by_cost(const void *a, const void *b) {
   const bool reach_x = x->seeds > 0, reach_y = y->seeds > 0;
   if (reach_x != reach_y)
     return reach_x ? -1 : 1;
-  const double p = reach_x ? x->cpu_s : resolution_of(x), q = reach_x ? y->cpu_s : resolution_of(y);
+  const double p = reach_x ? x->cpu_s : need_of(x), q = reach_x ? y->cpu_s : need_of(y);
   return (p > q) - (p < q);
 }
 
@@ -358,7 +363,7 @@ static void choose(struct accuracy *accuracy) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (option->seeds > 0)
       *(isnan(option->beyond) ? &open : &accuracy->chosen) = i;
-    if (resolution_of(option) <= resolution_of(&accuracy->options[accuracy->reference]))
+    if (need_of(option) <= need_of(&accuracy->options[accuracy->reference]))
       accuracy->reference = i;
   }
   if (in_time && accuracy->chosen == accuracy->count)
@@ -406,7 +411,6 @@ static status read_study(struct finding *finding, struct store *store, const str
     TRY(answer_end(&levels));
     if (finding->unstudied > 0)
       finding->beyond = NAN;
-    finding->accuracy->most = most_of(finding->share, finding->accuracy->mean);
   }
   return STATUS_OK;
 }
@@ -441,7 +445,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
                      struct accuracy *accuracy, struct error *error) {
   struct finding finding = {.campaign = campaign, .accuracy = accuracy};
   STORE store = NULL;
-  *accuracy = (struct accuracy){.within = campaign->accuracy_within, .path = path};
+  *accuracy = (struct accuracy){.path = path};
   TRY(divide_time(campaign, accuracy, error));
   const status code = store_open_reader(store_path, &store, error);
   if (code == STATUS_MISSING)
@@ -552,18 +556,18 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
 static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
                          const struct accuracy_option *best, char *next, size_t size) {
   const double error = resolution_of(best), middle = best->middle * error;
-  const double factor = error > 0 ? (error - middle) / (accuracy->within - middle) : 2; /* 0: no run differs yet */
-  const double seeds = ceil((double)accuracy->n * factor * factor);
+  const double factor = error > 0 ? (error - middle) / (best->within - middle) : 2; /* 0: no run differs yet */
+  const double seeds = ceil((double)best->n * factor * factor);
   char text[UNIT_TEXT];
-  if (middle >= accuracy->within || seeds > STUDY_SEEDS) {
-    if (middle < accuracy->within && error > 0)
+  if (middle >= best->within || seeds > STUDY_SEEDS) {
+    if (middle < best->within && error > 0)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
     else
       text_append(next, size,
                   "More seeds are not likely to help: they narrow the interval of this error, whose middle is %.2g%s",
                   middle, width_unit(campaign, text));
     text_append(next, size, ". No setting that was studied is enough");
-    if (middle >= accuracy->within && accuracy->widest) {
+    if (middle >= best->within && accuracy->widest) {
       text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it", accuracy->widest->name);
       append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, next, size);
     }
@@ -574,7 +578,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (!option->extrapolated)
-      time_s += (seeds - (double)accuracy->n) * option->run_s;
+      time_s += fmax(seeds - (double)option->n, 0) * option->run_s;
     if (condition_has(seen, option->knob))
       continue;
     text_append(seen, sizeof seen, "%s%s", *seen ? "," : "", option->knob);
@@ -592,7 +596,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
     text_append(next, size,
                 "More seeds narrow the interval of this error. The study has %" PRId64
                 "; if its middle stays at %.2g, about %.0f at every level are needed, which take",
-                accuracy->n, middle, seeds);
+                best->n, middle, seeds);
   else
     text_append(next, size, "More seeds may show a difference; %.0f at every level take", seeds);
   text_append(next, size, " %s of processor time: `clast converge %s%s%s --max-seeds %.0f --within off --seeds %.0f`",
@@ -610,18 +614,27 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
     snprintf(text, size, "%s = %s", option->knob, setting);
 }
 
+/* "0.02 m/s", "5 % of its mean". Returns text. */
+static const char *show_width(const struct campaign *campaign, char *text, size_t size) {
+  char unit[UNIT_TEXT];
+  const bool share = campaign->accuracy_of_value;
+  snprintf(text, size, "%.3g%s", campaign->accuracy_within * (share ? 100 : 1),
+           share ? " % of its mean" : width_unit(campaign, unit));
+  return text;
+}
+
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", share[32] = "", more[256] = "", chosen[256], smallest[1200], text[UNIT_TEXT];
+  char next[1600] = "", width[64], share[32] = "", more[256] = "", chosen[256], smallest[1200], text[UNIT_TEXT];
   const char *unit = width_unit(campaign, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
-    snprintf(share, sizeof share, "%.3g %% (", 100 * campaign->accuracy_within);
-  const bool a_guess = best->open && least <= accuracy->within; /* what lies beyond the finest level is not known */
-  const bool by_resolution = !accuracy->open && best->middle * least >= accuracy->within;
+    snprintf(share, sizeof share, " (%.2g %%)", 100 * least / fabs(best->mean));
+  const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
+  const bool by_resolution = !accuracy->open && best->middle * least >= best->within;
   const bool of_another = finest && strncmp(accuracy->left_out, finest->knob, strlen(finest->knob)) != 0;
   if (*accuracy->left_out && !by_resolution && !of_another)
     text_append(next, sizeof next,
@@ -631,26 +644,30 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
     advise_levels(accuracy, campaign, finest, next, sizeof next);
   else
     advise_seeds(accuracy, campaign, best, next, sizeof next);
-  if (1.3 * least < fmin(fabs(accuracy->mean), accuracy->most) && 1.3 * least > accuracy->within)
+  if (1.3 * least < fmin(fabs(best->mean), best->most) && 1.3 * least > best->within)
     text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %.2g%s}`, or ", quantity,
-                1.3 * least, unit);
-  snprintf(smallest, sizeof smallest, "The smallest error is %s%.2g%s%s, with %s", best->open ? "about " : "", least,
-           unit,
+                campaign->accuracy_of_value ? 130 * least / fabs(best->mean) : 1.3 * least,
+                campaign->accuracy_of_value ? " %" : unit);
+  snprintf(smallest, sizeof smallest,
+           "The smallest error is %s%.2g%s%s%s, with %s, whose mean is %.4g%s (%" PRId64 " seeds)",
+           best->open ? "about " : "", least, unit, share,
            a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
            : best->open ? " (a guess, as no limit is seen)"
                         : "",
-           chosen);
+           chosen, best->mean, unit, best->n);
   if (best->open && !(least > 0))
     snprintf(smallest, sizeof smallest,
              "No run of the study differs between the settings, which does not tell how far "
              "other runs may be");
   text_append(smallest, sizeof smallest, *accuracy->marked ? ". Levels whose runs are in doubt do not count: %s" : "%s",
               accuracy->marked);
-  return status_fail(error, STATUS_CONTENT,
-                     "accuracy: no setting %s %s within %s%.2g%s%s of its mean %.4g%s (%" PRId64
-                     " seeds). %s. %s. You can %sask for the least error in a time: `clast plan %s --within 10min`",
-                     a_guess ? "is known to give" : "gives", quantity, share, accuracy->within, unit, *share ? ")" : "",
-                     accuracy->mean, unit, accuracy->n, smallest, next, more, path);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "accuracy: %s%s%sno setting %s %s within %s. %s. %s. You can %sask for the least error in a time: `clast "
+      "plan %s --within 10min`",
+      *accuracy->studied ? "by the study of " : "", accuracy->studied, *accuracy->studied ? ", " : "",
+      a_guess ? "is known to give" : "gives", quantity, show_width(campaign, width, sizeof width), smallest, next, more,
+      path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -668,6 +685,13 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
 
 /* ---- the table of settings and seeds that reach an accuracy ---- */
 
+/* People see as many digits as they need. */
+static double rounded(bool people, int digits, double number) {
+  char text[40];
+  snprintf(text, sizeof text, "%.*g", digits, number);
+  return people ? strtod(text, NULL) : number;
+}
+
 /* One row per way to run the campaign: cost of a point against that of the most accurate one. */
 static status print_alternatives(const struct accuracy *accuracy, const struct campaign *campaign,
                                  enum table_format format, FILE *out, struct error *error) {
@@ -680,6 +704,9 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   const char *unit = width_unit(campaign, unit_text) + (*unit_text == ' ');
   TABLE table = table_new(format, out);
   table_columns(table, (const char *const[]){"choice", "knob", "setting", NULL});
+  table_column(table, "mean", unit);
+  if (campaign->accuracy_of_value)
+    table_column(table, "within", unit);
   table_column(table, "error", unit);
   table_column(table, "known", NULL);
   if (guessed)
@@ -697,6 +724,9 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
     table_text(table, i == accuracy->chosen ? "chosen" : "");
     table_text(table, option->own ? "" : option->knob);
     table_text(table, option->own ? "the scene's own" : setting);
+    table_real(table, rounded(people, 3, option->mean));
+    if (campaign->accuracy_of_value)
+      table_real(table, rounded(people, 2, option->within));
     if (people)
       table_text(table, study_show_error(option->error, option->open, text));
     else
@@ -705,13 +735,15 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
                       : option->extrapolated ? "extrapolated"
                                              : "yes");
     if (guessed)
-      table_real(table, option->beyond);
+      table_real(table, rounded(people, 2, option->beyond));
     if (option->seeds)
       table_integer(table, option->seeds);
     else
       table_missing(table);
-    table_reals(table, 4,
-                (const double[]){option->total, option->run_s, option->cpu_s, option->run_s / reference->run_s});
+    table_real(table, rounded(people, 2, option->total));
+    const double costs[] = {option->run_s, option->cpu_s, option->run_s / reference->run_s};
+    for (size_t c = 0; c < sizeof costs / sizeof costs[0]; c++)
+      table_real(table, rounded(people, 3, costs[c]));
   }
   return table_end(table, error);
 }
@@ -724,7 +756,7 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
   const bool in_time = !isnan(accuracy->point_s);
-  char time[32], allowed[32], chosen[256], cost[120] = "", text[UNIT_TEXT];
+  char time[32], allowed[32], chosen[256], cost[120] = "", share[64] = "", text[UNIT_TEXT];
   const char *unit = width_unit(campaign, text);
   name_option(campaign, option, chosen, sizeof chosen);
   if (option->beyond > 0)
@@ -735,11 +767,11 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   if (*option->marks)
     words_print(out, before, "the results of this choice are in doubt (!), %s (`clast explain` and the word)",
                 option->marks);
-  if (option->total >= accuracy->most)
+  if (option->total >= option->most)
     words_print(out, before,
                 "Such an error says nothing of a share with the mean %.2g: no setting of the study is "
                 "near enough",
-                accuracy->mean);
+                option->mean);
   progress_duration(option->cpu_s * (in_time ? campaign->accuracy_time / accuracy->point_s : 1), time, sizeof time);
   progress_duration(campaign->accuracy_time, allowed, sizeof allowed);
   if (timed)
@@ -747,9 +779,12 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   if (in_time)
     text_append(cost, sizeof cost, timed ? " (%s allowed)" : " (%s of processor time allowed)", allowed);
   const char *const or_more[] = {"", " or more"}, *more = or_more[isnan(option->beyond)];
+  if (campaign->accuracy_of_value)
+    snprintf(share, sizeof share, " (%.2g %% of its mean %.3g%s)", 100 * option->total / fabs(option->mean),
+             option->mean, unit);
   words_print(out, before,
-              "%s \xc2\xb1 %.2g%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
-              campaign->accuracy_quantity, option->total, unit, more, resolution_of(option), unit, more, chosen,
+              "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
+              campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more, chosen,
               option->seeds, cost);
   if (*accuracy->studied)
     words_print(out, before,
@@ -799,14 +834,17 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
   if (print == ACCURACY_NOTE)
     print_choice(&accuracy, campaign, "clast: ", true, stderr);
   if (print == ACCURACY_TEXT) {
-    char unit[UNIT_TEXT];
+    char width[64];
     if (isnan(accuracy.point_s))
-      printf("accuracy  %s within %.3g%s\n", campaign->accuracy_quantity, accuracy.within, width_unit(campaign, unit));
+      words_print(stdout, "accuracy  ", "%s within %s%s", campaign->accuracy_quantity,
+                  show_width(campaign, width, sizeof width),
+                  campaign->accuracy_of_value ? ": each setting by its own mean, column within" : "");
     print_choice(&accuracy, campaign, "accuracy  ", false, stdout);
     TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
     words_print(stdout, "",
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
-                "point_cpu: by the runs of the study. run_cost: against the smallest error");
+                "point_cpu: by the runs of the study. run_cost: against the smallest error%s",
+                campaign->accuracy_of_value ? ", which of each setting is a share of its own mean" : "");
     if (*accuracy.marked && accuracy.chosen < accuracy.count)
       words_print(stdout, "", "Left out, as their runs are in doubt (!) where the scene's own are not: %s",
                   accuracy.marked);

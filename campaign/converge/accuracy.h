@@ -20,6 +20,10 @@ struct accuracy_option {
   double middle; /* share of the error that more seeds leave: the middle of the knob's interval over its farther end */
   double beyond; /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
                     the option is chosen for a time only, if no other can be run. Else 0 */
+  double mean;   /* of an extrapolated one that of the finest level with runs */
+  int64_t n;     /* seeds of this mean */
+  double within; /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
+  double most;   /* no error of a share is larger than its distance from the farther end; else infinite */
   double deviation; /* standard deviation between seeds */
   int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
   double total;     /* error, beyond if known, and half width of the 95 % interval of the mean of so many seeds; NaN
@@ -36,10 +40,6 @@ struct accuracy {
   size_t count;
   double point_s; /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
   size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does */
-  double within;  /* the campaign's, in the quantity's SI unit; NaN for a time */
-  double mean;    /* with the scene's own settings */
-  int64_t n;      /* seeds of the study there */
-  double most;    /* no error of a share is larger than its distance from the farther end; else infinite */
   const struct knob *open;   /* of resolution, without a limit; NULL: none */
   const struct knob *widest; /* of resolution, the one that leaves most unknown at its finest level; NULL: none */
   double widest_resolution, widest_value; /* what it leaves there, and this level */
@@ -50,7 +50,7 @@ struct accuracy {
   char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
   char studied[300];  /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
   const char *path;   /* the campaign's file with --set and --store of the command (option_words()); borrowed */
-  size_t reference;   /* the option with the smallest error; costs are relative to it */
+  size_t reference;   /* the option with the smallest error (for a share: of its mean); costs are relative to it */
 };
 
 /* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its

@@ -57,8 +57,8 @@ static const struct field rows[] = {
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_ANY_UNIT,
         .doc = "Choose settings and number of seeds so that the error of resolution and the 95 % interval of the mean "
                "together are at most this, at the least processor time: a value of the quantity with its "
-               "unit (17 MPa), or a share of its mean (5 %). The choice comes from a study in the store (`clast "
-               "converge`). off: settings and seeds are as written."),
+               "unit (17 MPa), or a share of its mean (5 %), for each setting of the mean that it gives itself. The "
+               "choice comes from a study in the store (`clast converge`). off: settings and seeds are as written."),
     ROW("accuracy.processor_time", accuracy_time, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e12,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
         .doc = "Instead of within: choose settings and number of seeds so that the same sum is least for so much "

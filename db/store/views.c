@@ -343,7 +343,7 @@ static void write_shares(const struct field_table *table, const char *before, FI
  * of the knob, at the scene's own setting. Where that setting has no error, the largest one of the knob's levels counts
  * and is no bound. Named settings: the error of their reference, which takes the knobs at its own values, and how far
  * they are from it. Among several studies, the one with the largest error counts. No error of a share is larger than
- * its distance from the farther end of 0 to 1. */
+ * its distance from the farther end of 0 to 1; a level without runs counts with the mean of the finest one. */
 static void write_resolution(struct view *view) {
   fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n"
         "WITH share (quantity) AS (VALUES ",

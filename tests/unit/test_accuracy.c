@@ -49,9 +49,9 @@ struct level {
   double step;
 };
 
-/* The error of a level is its own resolution and that of the scene's own level of every other knob. */
-static void add_study(struct store *store, const struct campaign *campaign, const char *knob, size_t count,
-                      const struct level *levels) {
+/* The error of a level is its own resolution and that of the scene's own level of every other knob. means: NULL: 0.3 */
+static void add_study_of(struct store *store, const struct campaign *campaign, const char *knob, size_t count,
+                         const struct level *levels, const double *means) {
   struct convergence_row rows[8];
   struct convergence_limit_row limit;
   int64_t points[8], point;
@@ -65,7 +65,7 @@ static void add_study(struct store *store, const struct campaign *campaign, cons
     snprintf(rows[i].setting, sizeof rows[i].setting, "%s", levels[i].setting);
     strcpy(rows[i].quantity, "largest_fraction");
     rows[i].n = 10;
-    rows[i].mean = 0.3;
+    rows[i].mean = means ? means[i] : 0.3;
     rows[i].bias = rows[i].resolution = levels[i].resolution;
     rows[i].bias_half_width = 0;
     rows[i].deviation = levels[i].deviation;
@@ -88,6 +88,11 @@ static void add_study(struct store *store, const struct campaign *campaign, cons
   const struct store_convergence study = {point, engine_find("dem", &error)->results_version, count, points, rows,
                                           &limit};
   assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+}
+
+static void add_study(struct store *store, const struct campaign *campaign, const char *knob, size_t count,
+                      const struct level *levels) {
+  add_study_of(store, campaign, knob, count, levels, NULL);
 }
 
 /* Own setting: 10 s, error 0.03. Twice the time step: 5 s, error 0.04. A quarter: 40 s, error 0.01. A cheaper model is
@@ -167,6 +172,56 @@ static void finer_than_any_level(void **state) {
   assert_true(fabs(chosen->error - (0.005 + 0.02 * sqrt(0.5))) < 1e-12);
   assert_true(chosen->run_s > 15 && chosen->run_s < 25);
   assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+/* `within: 5 %` is 5 % of the mean that a setting gives, not of that with the scene's own ones. The mean of the finer
+ * level is three times as large, so that its error is small enough; where the own mean is the larger one, the cheaper
+ * level with the same error is not near enough. */
+static void a_share_is_one_of_the_settings_own_mean(void **state) {
+  (void)state;
+  static const struct {
+    struct level levels[2];
+    double means[2];
+    const char *chosen;
+  } cases[] =
+      {{{{"1e-6", 0.02, 1e-4, 10, true, false, 0}, {"5e-07", 0.02, 1e-4, 20, false, false, 0}}, {0.3, 0.9}, "5e-07"},
+       {{{"2e-06", 0.03, 1e-4, 5, false, false, 0}, {"1e-6", 0.03, 1e-4, 10, true, false, 0}}, {0.3, 0.9}, "1e-6"}};
+  for (size_t i = 0; i < 2; i++) {
+    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 5 %}\n");
+    struct store *store = NULL;
+    struct accuracy accuracy;
+    assert_int_equal(store_open_writer(fixture_path(path, "shares"), &store, NULL, 0, &error), STATUS_OK);
+    add_study_of(store, campaign, "time_step", 2, cases[i].levels, cases[i].means);
+    assert_int_equal(store_close(store, &error), STATUS_OK);
+    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    assert_true(accuracy.count == 2 && accuracy.chosen == 0);
+    assert_string_equal(accuracy.options[0].setting, cases[i].chosen);
+    assert_true(accuracy.options[0].total <= 0.05 * 0.9);
+    accuracy_clear(&accuracy);
+    campaign_free(campaign);
+  }
+}
+
+/* No error of a share is larger than its distance from the farther end, here 0.7: also of settings that nothing ran. */
+static void no_error_is_larger_than_a_share_can_move(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct store *store = NULL;
+  struct accuracy accuracy;
+  assert_int_equal(store_open_writer(fixture_path(path, "capped"), &store, NULL, 0, &error), STATUS_OK);
+  add_study_of(store, campaign, "time_step", 3,
+               (const struct level[]){{"2e-6", 0.5, 1e-4, 5, false, false, 2e-6},
+                                      {"1e-6", 0.5, 1e-4, 10, true, false, 1e-6},
+                                      {"5e-07", 0.4, NAN, NAN, false, false, 5e-7}},
+               (const double[]){0.4, 0.3, NAN});
+  add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.5, 1e-4, 10, true, false, 0}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy.count, 3);
+  for (size_t i = 0; i < accuracy.count; i++)
+    assert_true(fabs(accuracy.options[i].error - (strcmp(accuracy.options[i].setting, "2e-6") ? 0.7 : 0.6)) < 1e-12);
   accuracy_clear(&accuracy);
   campaign_free(campaign);
 }
@@ -350,6 +405,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
                                      cmocka_unit_test(the_cheapest_that_reaches_it),
                                      cmocka_unit_test(finer_than_any_level),
+                                     cmocka_unit_test(a_share_is_one_of_the_settings_own_mean),
+                                     cmocka_unit_test(no_error_is_larger_than_a_share_can_move),
                                      cmocka_unit_test(levels_that_differ_little_are_enough),
                                      cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
                                      cmocka_unit_test(a_study_without_the_scenes_own_level),
