@@ -34,8 +34,8 @@ void charts_label(const char *column, char label[CHARTS_LABEL]);
 status charts_axis(struct store *store, const char *column, char label[CHARTS_LABEL], struct error *error);
 /* The paths of inputs, separated by ", ", as their names: "impact speed, weibull m". */
 void charts_labels(const char *paths, char *labels, size_t size);
-/* "95 % intervals over seeds", or over points that differ in the pooled inputs (of ask_group; "": none). */
-void charts_intervals(const char *pooled, char *text, size_t size);
+/* "95 % intervals over seeds", or over points that differ in the pooled inputs, or of some marks each. */
+void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t size);
 /* Describes the known error of the resolution of a quantity at the points of the store, after `adds` if there is
  * one. */
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
@@ -66,10 +66,11 @@ status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice 
 status quantity_no_values(struct store *store, const char *quantity, struct error *error);
 /* Prints a line on stderr that names the varied inputs without effect (ask_group_idle()); none: prints nothing. */
 status quantity_tell_idle(struct store *store, struct error *error);
-/* Prints a line on stderr: the meaning of the intervals, and the error of the resolution. pooled: from ask_group. */
-void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
+/* Prints a line on stderr: the meaning of the intervals, and the error of the resolution. pooled: of ask_group(); NULL:
+ * nothing. */
+void quantity_tell_resolution(struct store *store, const char *name, const struct ask_group_pooled *pooled);
 /* Prints a line for each of several comma-separated names; "main": the default quantity. */
-void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled);
+void quantity_tell_resolutions(struct store *store, const char *names, const struct ask_group_pooled *pooled);
 
 /* Draws the quantity over `x`, a line for each value of `by` (may be NULL). STATUS_USAGE: x is not a number, too many
  * lines or points, unknown names. */

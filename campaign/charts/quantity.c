@@ -21,6 +21,7 @@
 /* Columns of ask_group after the axes. */
 enum {
   VERSION = 1,
+  POINTS = 2,
   MEAN = 7,
   HALF_WIDTH = 10,
   LOW = 11,
@@ -45,6 +46,7 @@ struct row {
   double input[AXES];          /* in the campaign's unit; NaN: a text, off, or does not apply */
   char text[AXES][INPUT_TEXT]; /* the inputs for people; "": off, or does not apply */
   int64_t version;             /* results_version */
+  int64_t points;              /* that the value is a mean of */
   double value, lower, upper;  /* bounds of the 95 % interval; NaN: unknown */
   double half_width;           /* of this interval, also where a share's interval ends at 0 or 1 */
   double resolution;           /* possible change of the value by finer settings; NaN: unknown */
@@ -59,7 +61,7 @@ struct quantity {
   char column[AXES][256];          /* the axes' columns in the views */
   char name[256];                  /* column of the quantity, or the exponent's name */
   char main[ASK_GROUP_NAME];       /* the quantity that a user who names none sees */
-  char pooled[ASK_GROUP_POOLED];   /* other varied inputs that the means average over, with points as units; "": none */
+  struct ask_group_pooled pooled;  /* what the means that are drawn average over */
   char untold[400];                /* why some exponents are not told: their values are NaN */
   char changing[ASK_GROUP_POOLED]; /* varied inputs that are not drawn and change from point to point; "": none */
   struct row *row;                 /* owned */
@@ -125,6 +127,7 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
     for (size_t i = 0; i < axes; i++)
       inputs[i] = answer_value(groups, i);
     const struct row row = {.version = answer_integer(groups, axes + VERSION),
+                            .points = answer_integer(groups, axes + POINTS),
                             .value = answer_real(groups, axes + MEAN),
                             .lower = answer_real(groups, axes + LOW),
                             .upper = answer_real(groups, axes + HIGH),
@@ -269,13 +272,13 @@ static status read_quantity(struct store *store, const char *const inputs[AXES],
   snprintf(quantity->name, sizeof quantity->name, "%s", name);
   TRY(estimates_named(name, &quantity->exponent, &method, &window, error));
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, quantity->written, &quantity->written_count, error));
-  ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, quantity->pooled, error);
+  ANSWER groups = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : name, &quantity->pooled, error);
   TRY(answer_status(&groups));
   TRY(read_names(quantity, &groups, refusal, error));
   TRY(ask_group_changing(store, by, quantity->changing, error));
   if (!quantity->exponent)
     return read_groups(quantity, &groups, error);
-  quantity->pooled[0] = '\0'; /* exponents belong to single points */
+  quantity->pooled.inputs[0] = '\0'; /* exponents belong to single points */
   return read_exponents(store, quantity, method, window, newest, error);
 }
 
@@ -323,17 +326,20 @@ status quantity_tell_idle(struct store *store, struct error *error) {
   return STATUS_OK;
 }
 
-void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {
+void quantity_tell_resolution(struct store *store, const char *name, const struct ask_group_pooled *pooled) {
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];
   if (ask_resolution(store, 0, name, &resolution, NULL))
     return;
   uncertainty_resolution(&resolution, text);
   fprintf(stderr, "clast: %s: intervals are over %s (95 %%; none where all are equal to 14 digits); %s\n", name,
-          *pooled ? "points" : "seeds", text);
+          !pooled || !*pooled->inputs ? "seeds"
+          : pooled->single            ? "points, of one point over seeds"
+                                      : "points",
+          text);
 }
 
-void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled) {
+void quantity_tell_resolutions(struct store *store, const char *names, const struct ask_group_pooled *pooled) {
   char name[128];
   if (strcmp(names, "main") == 0)
     names = OUTCOME_DEFAULT;
@@ -346,9 +352,29 @@ void quantity_tell_resolutions(struct store *store, const char *names, const cha
 /* How the values of a chart were made: "mean over seeds and ...". */
 static void made_of(const struct quantity *quantity, char *text, size_t size) {
   char pooled[ASK_GROUP_POOLED];
-  charts_labels(quantity->pooled, pooled, sizeof pooled);
+  charts_labels(quantity->pooled.inputs, pooled, sizeof pooled);
   snprintf(text, size, "%s%s%s", quantity->exponent ? "fit to all runs of a point" : "mean over seeds",
-           *pooled ? " and " : "", pooled);
+           !*pooled                  ? ""
+           : quantity->pooled.single ? " and, of several points, "
+                                     : " and ",
+           pooled);
+}
+
+/* Keeps of the pooled inputs what holds for the rows that are drawn: on an axis of numbers, those of one scene can be
+ * single points where others pool. */
+static void keep_drawn(struct quantity *quantity, size_t axes) {
+  bool several = false;
+  quantity->pooled.single = false;
+  for (size_t r = 0; r < quantity->count; r++) {
+    const struct row *row = &quantity->row[r];
+    bool drawn = isfinite(row->value);
+    for (size_t i = 0; i < axes; i++)
+      drawn = drawn && (!isnan(row->input[i]) || (axes == 1 && *row->text[i]));
+    several |= drawn && row->points > 1;
+    quantity->pooled.single |= drawn && row->points < 2;
+  }
+  if (!several)
+    quantity->pooled.inputs[0] = '\0';
 }
 
 /* Fails if tables show none of the exponents. */
@@ -467,12 +493,13 @@ static void tell_changing(const struct quantity *quantity, const char *drawn, ch
 /* Takes the rows of a quantity as lines and draws them. */
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
+  keep_drawn(&plot->quantity, 1);
   for (size_t i = 0; i < quantity->count; i++)
     TRY(add_mean(plot, &quantity->row[i], error));
   TRY(check_told(quantity, error));
   char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL], over[CHARTS_LABEL];
-  char title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
-  char made[ASK_GROUP_POOLED + 40];
+  char title[ASK_GROUP_POOLED + 4 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
+  char made[ASK_GROUP_POOLED + 60];
   TRY(charts_axis(store, quantity->column[0], x, error));
   if (quantity->axes == 2)
     TRY(charts_axis(store, quantity->column[1], by, error));
@@ -495,7 +522,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   snprintf(title, sizeof title, "%s over %s: %s", name, over, made);
   if (*title >= 'a' && *title <= 'z')
     *title = (char)(*title - 'a' + 'A');
-  charts_intervals(quantity->pooled, intervals, sizeof intervals);
+  charts_intervals(&quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Error bars: %s; %s", intervals, resolution);
   if (*quantity->untold)
@@ -517,7 +544,7 @@ status quantity_plot(struct store *store, const char *x, const char *by, const c
                     "one), and one quantity",
                     &plot.quantity, error));
   TRY(draw_lines(store, &plot, page, error));
-  quantity_tell_resolution(store, plot.quantity.name, plot.quantity.pooled);
+  quantity_tell_resolution(store, plot.quantity.name, &plot.quantity.pooled);
   return STATUS_OK;
 }
 
@@ -539,7 +566,7 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
                          const struct picture_tile *tile, const struct panels *panels, double widest,
                          const struct picture_page *page, struct error *error) {
   char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 400], caption[1100];
-  char made[ASK_GROUP_POOLED + 40], intervals[600], resolution[400];
+  char made[ASK_GROUP_POOLED + 60], intervals[600], resolution[400];
   const char *label[MOST_PANELS];
   for (size_t p = 0; p < panels->count; p++)
     label[p] = panels->text[p];
@@ -549,7 +576,7 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   made_of(quantity, made, sizeof made);
   snprintf(title, sizeof title, "%s: %s", z, made);
   title[0] = (char)toupper((unsigned char)title[0]);
-  charts_intervals(quantity->pooled, intervals, sizeof intervals);
+  charts_intervals(&quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
   if (widest > 0)
     snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.3g, `clast %s` has all; %s", intervals,
@@ -645,8 +672,9 @@ status quantity_map(struct store *store, const char *x, const char *y, const cha
   TRY(read_quantity(store, inputs, name, true,
                     "a map needs two different inputs (--x, --y), at most a third one (--by) and one quantity",
                     &quantity, error));
+  keep_drawn(&quantity, 2);
   TRY(memory_array(&tile, quantity.count, sizeof *tile, "the map", error));
   TRY(make_tiles(store, &quantity, tile, page, error));
-  quantity_tell_resolution(store, quantity.name, quantity.pooled);
+  quantity_tell_resolution(store, quantity.name, &quantity.pooled);
   return STATUS_OK;
 }

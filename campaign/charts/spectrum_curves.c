@@ -143,7 +143,7 @@ static void print_rivals(const struct pooled_rivals *rivals, const char *kg) {
 
 struct curves {
   const struct spectrum_choice *choice;
-  bool several; /* a pool has more than one point */
+  bool several, single; /* a pool has more than one point; one has one */
   size_t count, most;
   bool more; /* there are more pools than are drawn */
   int64_t point;
@@ -178,7 +178,10 @@ static void write_caption(struct store *store, const struct curves *curves, char
       caption, CAPTION,
       "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
       laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Error bars",
-      curves->several ? "points" : "seeds", text);
+      !curves->several ? "seeds"
+      : curves->single ? "points, of one point over seeds"
+                       : "points",
+      text);
   char untold[400] = "";
   for (size_t i = 0; i < curves->count; i++)
     pooled_exponent_tell(curves->curve[i].untold, untold, sizeof untold);
@@ -251,6 +254,7 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
     TRY(make_curve(curves->choice, with_rivals, pool, curve, error));
     curve->fit.label = curve->fit_label;
     curves->several |= pool->points > 1;
+    curves->single |= pool->points == 1;
     ask_doubts_add(&curves->doubts, &pool->doubts);
   }
   TRY(ask_pools_end(&pools));

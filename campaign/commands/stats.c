@@ -46,14 +46,16 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const char *asked = options->quantity;
   TRY(ask_quantity_main(store, name, &asked, error));
   const char *quantity = strcmp(asked, "main") == 0 ? NULL : asked;
-  char pooled[ASK_GROUP_POOLED] = "", changing[ASK_GROUP_POOLED] = "";
-  TRY(table_answer(ask_group(store, options->by, quantity, pooled, error), true, line->format, stdout));
-  if (*pooled)
-    fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
+  struct ask_group_pooled pooled = {.inputs = ""};
+  char changing[ASK_GROUP_POOLED] = "";
+  TRY(table_answer(ask_group(store, options->by, quantity, &pooled, error), true, line->format, stdout));
+  if (*pooled.inputs)
+    fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval%s\n", pooled.inputs,
+            pooled.single ? "; in a row of one point, its runs" : "");
   TRY(ask_group_changing(store, options->by, changing, error));
   if (*changing)
     fprintf(stderr, "clast: from row to row the value of %s changes, too (--by)\n", changing);
-  const int64_t levels = *pooled ? ask_campaign_levels(store) : 0;
+  const int64_t levels = *pooled.inputs ? ask_campaign_levels(store) : 0;
   if (levels > 0)
     fprintf(stderr,
             "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "
@@ -62,7 +64,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   if (table_for_people(line->format)) {
     TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, asked, error));
     TRY(quantity_tell_idle(store, error));
-    quantity_tell_resolutions(store, asked, pooled);
+    quantity_tell_resolutions(store, asked, &pooled);
   }
   return warn_of_twins(store, error);
 }

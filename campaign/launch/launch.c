@@ -180,15 +180,16 @@ static status print_means(struct store *store, const char *path, int64_t campaig
                           enum table_format format, bool quiet, struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_POOL];
   size_t count;
-  char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", pooled[ASK_GROUP_POOLED] = "";
+  char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "";
+  struct ask_group_pooled pooled = {.inputs = ""};
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
   for (size_t i = 0; i < count; i++)
     text_append(by, sizeof by, "%s%s", i ? "," : "", axes[i].name);
-  TRY(table_answer(ask_group(store, by, quantity, pooled, error), true, format, stdout));
+  TRY(table_answer(ask_group(store, by, quantity, &pooled, error), true, format, stdout));
   TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){.campaign = campaign}, quantity, error));
   if (quiet)
     return STATUS_OK;
-  quantity_tell_resolutions(store, quantity, pooled);
+  quantity_tell_resolutions(store, quantity, &pooled);
   fprintf(stderr, "fragments, M_1/M and exponents: clast estimates %s\n", path);
   return STATUS_OK;
 }

@@ -235,9 +235,9 @@ static void print_legend(const struct printing *printing, FILE *out) {
     text_append(text, sizeof text,
                 ". Windows that begin at the same mass, where the spectrum is complete, have one row: the first");
   words_print(out, "", "%s.", text);
-  quantity_tell_resolution(printing->store, OUTCOME_DEFAULT, "");
+  quantity_tell_resolution(printing->store, OUTCOME_DEFAULT, NULL);
   if (seen->beta)
-    quantity_tell_resolution(printing->store, "beta", "");
+    quantity_tell_resolution(printing->store, "beta", NULL);
 }
 
 status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format,

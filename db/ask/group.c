@@ -297,7 +297,7 @@ static status take_first_names(struct answer *answer, char list[ASK_GROUP_POOLED
 
 /* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
  * all others. The first NAMED are named. */
-static status find_pooled(struct store *store, const struct names *axes, char pooled[ASK_GROUP_POOLED],
+static status find_pooled(struct store *store, const struct names *axes, struct ask_group_pooled *pooled,
                           struct error *error) {
   OWNED char *grouped = grouped_sql(axes);
   ANSWER answer = answer_to(
@@ -313,7 +313,12 @@ static status find_pooled(struct store *store, const struct names *axes, char po
       "FROM differing) GROUP BY grp, i.path HAVING count(DISTINCT i.value) > 1 OR count(*) < (SELECT count(*) FROM "
       "grouped h WHERE h.grp = g.grp)",
       grouped);
-  return take_first_names(&answer, pooled);
+  TRY(take_first_names(&answer, pooled->inputs));
+  double single;
+  TRY(answer_number(store, &single, error,
+                    "%s SELECT count(*) FROM (SELECT 1 FROM grouped GROUP BY grp HAVING count(*) = 1)", grouped));
+  pooled->single = single > 0;
+  return STATUS_OK;
 }
 
 static const char
@@ -350,7 +355,7 @@ status ask_group_columns(struct store *store, const char *by, size_t most, char 
 }
 
 static status find_names(struct store *store, const char *by, const char *quantities, struct names *axes,
-                         struct names *results, char pooled[ASK_GROUP_POOLED], struct error *error) {
+                         struct names *results, struct ask_group_pooled *pooled, struct error *error) {
   TRY(ask_register_functions(store, error));
   TRY(resolve(store, by, "Axis", axes_sql, axes, error));
   if (quantities)
@@ -358,7 +363,7 @@ static status find_names(struct store *store, const char *by, const char *quanti
   return find_pooled(store, axes, pooled, error);
 }
 
-struct answer ask_group(struct store *store, const char *by, const char *quantities, char pooled[ASK_GROUP_POOLED],
+struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,
                         struct error *error) {
   struct names axes = {.count = 0}, results = {.count = 0};
   const status code = find_names(store, by, quantities, &axes, &results, pooled, error);

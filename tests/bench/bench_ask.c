@@ -65,13 +65,13 @@ static void count_rows(struct answer answer, size_t *rows) {
 }
 
 static void stats(struct store *store, size_t *rows) {
-  char pooled[ASK_GROUP_POOLED];
-  count_rows(ask_group(store, "m,k", "largest_fraction", pooled, &error), rows);
+  struct ask_group_pooled pooled;
+  count_rows(ask_group(store, "m,k", "largest_fraction", &pooled, &error), rows);
 }
 
 static void stats_of_one(struct store *store, size_t *rows) {
-  char pooled[ASK_GROUP_POOLED];
-  count_rows(ask_group(store, "m", "largest_fraction", pooled, &error), rows);
+  struct ask_group_pooled pooled;
+  count_rows(ask_group(store, "m", "largest_fraction", &pooled, &error), rows);
 }
 
 static void twins(struct store *store, size_t *rows) {

@@ -205,6 +205,17 @@ expect 64 "$clast" map scenes.db m.png -x energy -y speed
 says "take two inputs that the same points have"
 expect 0 "$clast" plot scenes.db scenes.svg
 says "varied and suit all points: --x diameter --by scene"
+# The intervals are those of what is drawn or printed: of a mark or row of one point over seeds, also where others pool.
+expect 0 "$clast" plot scenes.db one.svg -x energy --by diameter
+says "largest_fraction: intervals are over seeds (95 %"
+grep -q 'intervals over seeds;' one.svg && ! grep -q speed one.svg || fail "what no mark pools"
+expect 0 "$clast" plot scenes.db some.svg -x diameter --by scene --where 'charge_energy IS NULL OR charge_energy < 1500 OR body_diameter < 0.075'
+says "intervals are over points, of one point over seeds (95 %"
+sed 's/<[^>]*>//g' some.svg | tr -s '[:space:]' ' ' | grep -q 'of a mark of one point: over seeds' || fail "a mark of one point"
+expect 0 "$clast" stats scenes.db --by diameter,scene --where 'charge_energy IS NULL OR charge_energy < 1500 OR body_diameter < 0.075'
+says "points are the units of mean, scatter and interval; in a row of one point, its runs"
+expect 0 "$clast" stats scenes.db --by diameter,scene
+says "points are the units of mean, scatter and interval clast"
 tiny nine
 sed -i 's/, charge.energy: 2 kJ.m//; s/per_point: 3/per_point: 1/; s/threshold.strain: .*/threshold.strain: [2 %, 3 %, 4 %, 5 %, 6 %, 7 %, 8 %, 9 %, 10 %]/; s/^vary:/vary:\n  charge.energy: [1 kJ\/m, 2 kJ\/m]/' nine.yaml
 expect 0 "$clast" run nine.yaml --quiet
@@ -379,4 +390,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 136
+done_after 140

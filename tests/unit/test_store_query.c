@@ -252,12 +252,13 @@ static void spectra_are_densities(void **state) {
 /* Points are the units of a group that pools over an input; the runs are the units of a point. */
 static void groups_say_what_they_pool(void **state) {
   (void)state;
-  char pooled[ASK_GROUP_POOLED];
+  struct ask_group_pooled pooled;
   struct store *store = reader();
   struct rows rows = {.count = 0};
-  OK(keep(ask_group(store, "m", "hardest, largest_fraction", pooled, &error), &rows));
+  OK(keep(ask_group(store, "m", "hardest, largest_fraction", &pooled, &error), &rows));
   assert_int_equal(rows.count, M);
-  assert_string_equal(pooled, "material.k");
+  assert_string_equal(pooled.inputs, "material.k");
+  assert_false(pooled.single);
   double sd, first = two_pass(largest, 6, 0, 1, &sd), second = two_pass(largest, 6, 1, 1, &sd);
   double scatter = fabs(first - second) / sqrt(2); /* of the means of two points */
   assert_true(scatter > 1e-3);
@@ -273,18 +274,19 @@ static void groups_say_what_they_pool(void **state) {
              "material_m,engine,results_version,points,n,failed,censored,excluded,hardest_mean,hardest_sd,hardest_se,"
              "hardest_hw95,hardest_low95,hardest_high95,hardest_weak,hardest_resolution,"
              "hardest_resolution_verdict,largest_fraction_mean"));
-  OK(keep(ask_group(store, "material.k,m", NULL, pooled, &error), &rows));
+  OK(keep(ask_group(store, "material.k,m", NULL, &pooled, &error), &rows));
   assert_int_equal(rows.count, M * K);
-  assert_string_equal(pooled, "");
-  OK(keep(ask_group(store, "", "broken_count", pooled, &error), &rows));
+  assert_string_equal(pooled.inputs, "");
+  assert_true(pooled.single);
+  OK(keep(ask_group(store, "", "broken_count", &pooled, &error), &rows));
   assert_int_equal(rows.count, 1);
-  assert_string_equal(pooled, "material.k, material.m");
-  assert_int_equal(keep(ask_group(store, "q", NULL, pooled, &error), &rows), STATUS_USAGE);
+  assert_string_equal(pooled.inputs, "material.k, material.m");
+  assert_int_equal(keep(ask_group(store, "q", NULL, &pooled, &error), &rows), STATUS_USAGE);
   assert_non_null(strstr(error.message, "material.m"));
-  assert_int_equal(keep(ask_group(store, "m", "fraction", pooled, &error), &rows), STATUS_USAGE);
+  assert_int_equal(keep(ask_group(store, "m", "fraction", &pooled, &error), &rows), STATUS_USAGE);
   assert_non_null(strstr(error.message, "ambiguous"));
   assert_non_null(strstr(error.message, "largest_fraction, second_fraction"));
-  assert_int_equal(keep(ask_group(store, "m", "largest_fracton", pooled, &error), &rows), STATUS_USAGE);
+  assert_int_equal(keep(ask_group(store, "m", "largest_fracton", &pooled, &error), &rows), STATUS_USAGE);
   assert_string_equal(error.message, "Quantity 'largest_fracton' is unknown; did you mean 'largest_fraction'?");
   store_close(store, NULL);
 }
