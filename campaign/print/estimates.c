@@ -240,10 +240,24 @@ static void print_legend(const struct printing *printing, FILE *out) {
     quantity_tell_resolution(printing->store, "beta", NULL);
 }
 
+/* The varied inputs, for programs in SI units; also the scene, where the store has several. */
+static status read_axes(struct printing *printing, struct error *error) {
+  struct ask_column written[LIMITS_AXES_OF_POOL];
+  size_t count = 0;
+  const bool people = table_for_people(printing->format);
+  TRY(ask_columns_axes(printing->store, people, LIMITS_AXES_OF_POOL, printing->axis, &printing->axes, error));
+  if (!people)
+    TRY(ask_columns_axes(printing->store, true, LIMITS_AXES_OF_POOL, written, &count, error));
+  for (size_t i = 0; i < count && printing->axes < LIMITS_AXES_OF_POOL; i++)
+    if (strcmp(written[i].name, "scene") == 0)
+      printing->axis[printing->axes++] = written[i];
+  return STATUS_OK;
+}
+
 status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format,
                        bool legend, struct error *error) {
   struct printing printing = {.store = store, .format = format};
-  TRY(ask_columns_axes(store, table_for_people(format), LIMITS_AXES_OF_POOL, printing.axis, &printing.axes, error));
+  TRY(read_axes(&printing, error));
   TRY(ask_resolution_of_exponents(store, &printing.studied, error));
   const char *inputs[LIMITS_AXES_OF_POOL];
   for (size_t i = 0; i < printing.axes; i++)

@@ -198,6 +198,8 @@ says "--x"
 # An axis that nobody named is an input of all points: of two scenes in one store, none of one scene alone. Lines and panels
 # have few values.
 two_scenes scenes.db
+expect 0 "$clast" estimates scenes.db --csv # two scenes are told apart, as in the table for people
+same "$(python -c 'import csv; print(*sorted({(r["scene"], r["charge_energy"] != "") for r in csv.DictReader(open("out"))}))')" "('disc-collision', False) ('disc-explosion', True)" "scenes of points"
 expect 64 "$clast" map scenes.db m.png
 says "no two varied inputs are numbers in all points: -x energy -y diameter draws the 4 of 6 points that have both"
 expect 0 "$clast" map scenes.db scenes.svg -x energy -y diameter
@@ -390,4 +392,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 140
+done_after 142
