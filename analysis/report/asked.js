@@ -19,11 +19,12 @@ function scene(stores) {
 
 function varied(store) {
   return store.axes.map((axis) => {
-    const values = [...new Set(store.points.map((point) => inUnit([store], axis.column_name, point[axis.column_name])))];
+    const given = store.points.map((point) => point[axis.column_name]).filter((value) => value !== null), without = store.points.length - given.length;
+    const values = [...new Set(given.map((value) => inUnit([store], axis.column_name, value)))];
     const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
-    const listed = numbers.length === values.length ? numbers : values;
-    const shown = values.length <= 8 ? listed.map((value) => number(value)).join(', ')
-      : `${values.length} values from ${number(numbers[0])} to ${number(numbers[numbers.length - 1])}`;
+    const listed = [...numbers, ...values.filter((value) => typeof value !== 'number')];
+    const shown = (listed.length <= 8 || numbers.length === 0 ? listed.map((value) => number(value)).join(', ')
+      : `${listed.length} values from ${number(numbers[0])} to ${number(numbers[numbers.length - 1])}`) + (without ? `; none in ${plural(without, 'point')}` : '');
     const path = element('span', {}, ...axis.path.split(/(?<=\.)/).flatMap((part) => [element('wbr'), part])); // lines end between its words
     return [path, shown, unitOf([store], axis.column_name), axis.meaning];
   });

@@ -317,7 +317,7 @@ export async function showPlane() {
   const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);
     return;

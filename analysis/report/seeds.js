@@ -3,7 +3,7 @@ import {body, fill, table} from './elements.js';
 import {COLOURS, DASHES, draw, nothing} from './chart.js';
 import {cells, doubtSentence, modesText} from './plane.js';
 import * as questions from './questions.js';
-import {nameOf, whereOf} from './spectrum.js';
+import {nameOf, whereOf, withPartners} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {quantileInterval, summary} from './statistics.js';
 import {ask, has} from './stores.js';
@@ -40,7 +40,8 @@ export async function showSeeds() {
   fill(below);
   if (!from.runColumns.has(quantity))
     return nothing(figure, quantity === 'beta' ? 'An exponent belongs to all runs of a point together: choose another quantity.' : 'Single runs of this quantity are not on this page (see "left out here").');
-  const samples = chosenPoints().map((point) => ({point, name: nameOf(from, point), values: valuesOf(from, point, quantity)})).filter((sample) => sample.values.length);
+  const samples = withPartners(chosenPoints()).filter((sample) => sample.from.runColumns.has(quantity))
+    .map((sample) => ({...sample, name: nameOf(sample.from, sample.point), values: valuesOf(sample.from, sample.point, quantity)})).filter((sample) => sample.values.length);
   if (samples.length === 0) {
     const kept = chosenPoints().some((point) => ask(from, questions.values('run_id'), {point: point.point_id}).length);
     return nothing(figure, kept ? `No run of the chosen points has a value of this quantity.${doubtSentence(from, cells(from, quantity).filter((cell) => state.chosen.has(cell.point_id)))}`
@@ -54,8 +55,10 @@ export async function showSeeds() {
   const digits = Math.max(3, Math.ceil(Math.log10(Math.max(...all.map(Math.abs), range) / range)) + 2);
   const x = {field: 'low', type: 'quantitative', title, scale: {zero: false, nice: false}, axis: {tickCount: 6, labelOverlap: true, format: `.${digits}~g`}};
   const y = {field: 'runs', type: 'quantitative', title: 'runs', axis: {tickMinStep: 1, format: 'd'}};
-  const whole = new Map(cells(from, quantity).map((cell) => [cell.point_id, cell]));
-  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, rangeOf(state.stores, quantity)), all: apart ? whole.get(sample.point.point_id) : null}));
+  const cellsOf = new Map([...new Set(samples.map((sample) => sample.from))].map((one) => [one, new Map(cells(one, quantity).map((cell) => [cell.point_id, cell]))]));
+  const whole = (sample) => cellsOf.get(sample.from).get(sample.point.point_id);
+  const doubts = [...cellsOf.keys()].map((one) => doubtSentence(one, samples.filter((sample) => sample.from === one).map(whole))).join('');
+  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, rangeOf(state.stores, quantity)), all: apart ? whole(sample) : null}));
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend: names.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null};
   const dash = {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend: colour.legend};
   const shape = names.length > 1
@@ -65,17 +68,17 @@ export async function showSeeds() {
     {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: names.length > 1 ? colour : {value: 'black'}}},
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
-    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Dashed lines: means.${doubtSentence(from, samples.map((sample) => whole.get(sample.point.point_id)))}`,
-    command: commandOf(from, quantity, samples.map((sample) => sample.point.point_id)),
+    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Dashed lines: means.${doubts}`,
+    command: commandOf(from, quantity, samples.filter((sample) => sample.from === from).map((sample) => sample.point.point_id)),
     columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });
   const mean = (row) => (row.all ? `${marked(withInterval(row.all), row.all.doubt, row.all.n)}, n=${row.all.n}` : withInterval(row));
-  const known = apart && has(from, 'quantile') ? samples.map(({point}) => new Map(ask(from, questions.quantiles, {quantity, point: point.point_id}).map((row) => [row.share, row]))) : [];
+  const known = apart ? samples.map((sample) => new Map((has(sample.from, 'quantile') ? ask(sample.from, questions.quantiles, {quantity, point: sample.point.point_id}) : []).map((row) => [row.share, row]))) : [];
   const quantileOf = (share, key) => (row, i) => {
     const all = known[i]?.get(share);
     if (all) return between(all.value, all.low, all.high);
-    const {point, values} = drawn[i]; // an interval is of all runs of a point
-    const {low, high} = apart && valuesOf(from, point, 'run_id').length === point.n ? quantileInterval(Float64Array.from(values).sort(), share) : {low: null, high: null};
+    const {from: own, point, values} = drawn[i]; // an interval is of all runs of a point
+    const {low, high} = apart && valuesOf(own, point, 'run_id').length === point.n ? quantileInterval(Float64Array.from(values).sort(), share) : {low: null, high: null};
     return between(row[key], low, high);
   };
   const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['lower quartile', quantileOf(0.25, 'quarter')], ['upper quartile', quantileOf(0.75, 'threeQuarters')],

@@ -8,7 +8,7 @@ import {pool} from './statistics.js';
 import {ask, exponents, has} from './stores.js';
 import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
 
-export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
+export const inputsOf = (from, point) => from.axes.filter((axis) => point[axis.column_name] !== null).map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
 export const nameOf = (from, point) =>
   `${state.stores.length > 1 ? `${from.name}: ` : ''}${inputsOf(from, point) || `point ${point.point_id}`}, ${plural(point.n ?? 0, 'run')}`;
@@ -26,17 +26,21 @@ function completeMass(from, points) {
 }
 
 // The points of other stores at the same place as these.
-export function partners(point) {
+function partners(point) {
   const same = (other, candidate) => other.axes.length === store().axes.length && other.axes.every((axis) => candidate[axis.column_name] === point[axis.column_name]);
   return state.stores.filter((other) => other !== store())
     .flatMap((other) => other.points.filter((candidate) => same(other, candidate)).slice(0, 1).map((candidate) => ({from: other, point: candidate})));
 }
 
+// [{from, point}]: these points, and of one or two also those of the other stores.
+export function withPartners(points) {
+  const each = points.map((point) => ({from: store(), point}));
+  return state.stores.length > 1 && points.length <= 2 ? each.flatMap((one) => [one, ...partners(one.point)]) : each;
+}
+
 // [{name, bins, points, from}] of what is drawn.
 function curves() {
-  const points = chosenPoints().filter((point) => point.n > 0);
-  let each = points.map((point) => ({from: store(), point}));
-  if (state.stores.length > 1 && points.length <= 2) each = each.flatMap((one) => [one, ...partners(one.point)]);
+  const points = chosenPoints().filter((point) => point.n > 0), each = withPartners(points);
   if (each.length <= COLOURS.length)
     return each.map(({from, point}) => ({name: nameOf(from, point), from, points: [point], bins: binsOf(from, point)})).filter((curve) => curve.bins.length);
   const spectra = points.map((point) => binsOf(store(), point)).filter((bins) => bins.length);

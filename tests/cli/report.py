@@ -369,6 +369,8 @@ def scenes(browser):
     wait_shown(browser, 1)
     of = lambda axis: browser.js(f"document.querySelector('#choices [name={axis}]').value")
     assert (of("x"), of("y")) == ("body_diameter", ""), (of("x"), of("y"))
+    table = browser.js("[...document.querySelectorAll('#asked tbody tr')].map((r) => [...r.cells].map((c) => c.textContent.trim()).slice(0, 2))")
+    assert table == [["body.diameter", "7, 8"], ["charge.energy", "1, 2; none in 2 points"], ["collision.speed", "40, 90; none in 4 points"]], table
     offered = set()
     for x in ("body_diameter", "charge_energy", "collision_speed"):
         for y in {"", "body_diameter", "charge_energy", "collision_speed"} - {x}:
@@ -387,6 +389,20 @@ def side_by_side(browser):
     told = text(browser, "#compare .body")
     assert "small.db and other.db also differ in charge.energy (2000 J/m, 3000 J/m)." in told and "The same from a shell" in told, told
     assert " 44 grains (small.db), 49 grains (other.db), 3 seeds a point" in text(browser, "#made"), text(browser, "#made")
+    assert "runs of each point of small.db (the choice Store shows the others)" in text(browser, "#plane-chart figcaption")
+    heads = browser.js("[...document.querySelectorAll('#seeds thead th')].map((h) => h.textContent.split(':')[0])")
+    assert heads == ["", "small.db", "other.db"] and " of 6 runs." in text(browser, "#seeds figcaption"), heads
+    with sqlite3.connect("file:other.db?mode=ro", uri=True) as db:
+        (point,) = browser.js("[...new URLSearchParams(location.hash.slice(1)).get('points').split('.').map(Number)]")
+        with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as own:
+            same = own.execute("SELECT threshold_strain, threshold_angle FROM points WHERE point_id = ?", (point,)).fetchone()
+        (mean,) = db.execute("SELECT largest_fraction_mean FROM points WHERE (threshold_strain, threshold_angle) = (?, ?)", same).fetchone()
+    cell = browser.js("document.querySelector('#seeds tbody tr').cells[2].textContent")
+    assert abs(float(re.match(r"[0-9.]+", cell).group()) - mean) < 0.1 * mean, (cell, mean)
+    browser.size(390, 900)
+    browser.until("document.querySelector('#compare .scroll').scrollWidth <= document.querySelector('#compare .scroll').clientWidth")
+    assert browser.js("document.querySelector('#compare td:last-child').dataset.heading") == "difference"
+    browser.size(1280, 900)
     browser.open("apart.html")
     wait_shown(browser, 1)
     told = text(browser, "#compare .body")
