@@ -97,6 +97,15 @@ void sample_of_share(struct sample_summary *summary, double level) {
                    deviation > SAMPLE_EDGE_SKEW * near);
 }
 
+double sample_share_half_width(size_t n, double mean, double deviation, double level) {
+  struct sample_summary of = {.n = n, .mean = mean, .standard_deviation = deviation, .half_width = NAN};
+  if (!(n > 1 && deviation > SAMPLE_ROUNDING * fabs(mean)))
+    return NAN;
+  of.half_width = sample_student(n, level) * deviation / sqrt((double)n);
+  sample_of_share(&of, level);
+  return of.half_width;
+}
+
 struct sample_range sample_range(const struct field *row) {
   if (!row || !field_is_number(row))
     return (struct sample_range){-HUGE_VAL, HUGE_VAL, false};

@@ -146,6 +146,11 @@ static bool rule_is_narrow(const struct wanted *wanted, size_t n) {
   return sample_may_stop_with(n, wanted->deviation, wanted->half_width, 0.95);
 }
 
+static bool rule_of_share_is_narrow(const struct wanted *wanted, size_t n) {
+  return rule_is_narrow(wanted, n) &&
+         !(sample_share_half_width(n, wanted->mean, wanted->deviation, 0.95) > wanted->half_width);
+}
+
 /* The smallest of `least`, `least` + `step`, ... that is enough. More runs are never less enough. 0: not known. */
 static size_t fewest(const struct wanted *wanted, size_t least, size_t step) {
   const double ratio = wanted->deviation / wanted->half_width;
@@ -178,8 +183,9 @@ size_t scatter_runs_of_share(double mean, double deviation, double half_width) {
   return isnan(mean) ? 0 : fewest(&(struct wanted){mean, deviation, half_width, share_is_narrow}, 2, 1);
 }
 
-size_t scatter_runs_of_rule(double deviation, double half_width) {
-  return fewest(&(struct wanted){0, deviation, half_width, rule_is_narrow}, SAMPLE_FIRST, SAMPLE_BATCH);
+size_t scatter_runs_of_rule(double mean, double deviation, double half_width, bool share) {
+  const struct wanted wanted = {mean, deviation, half_width, share ? rule_of_share_is_narrow : rule_is_narrow};
+  return fewest(&wanted, SAMPLE_FIRST, SAMPLE_BATCH);
 }
 
 struct scatter_histogram scatter_histogram_of(const struct scatter *s) {

@@ -65,6 +65,10 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
  *   far end; with fewer than SAMPLE_EDGE_RUNS when s is below SAMPLE_EDGE of it and above SAMPLE_EDGE_SKEW e. */
 void sample_of_share(struct sample_summary *summary, double level);
 
+/* The half width of that interval, of n values with this mean and standard deviation. NaN: they are equal, or too few.
+ */
+double sample_share_half_width(size_t n, double mean, double deviation, double level);
+
 /* The values that a quantity can have: HUGE_VAL is no end. */
 struct sample_range {
   double least, most;
@@ -609,9 +613,9 @@ void scatter_find_modes(struct scatter *scatter);
 size_t scatter_runs_needed(double deviation, double half_width);
 /* The same of a share (sample_of_share()): what an interval of a table needs. */
 size_t scatter_runs_of_share(double mean, double deviation, double half_width);
-/* The number of runs at which the stopping rule (sample_may_stop()) ends a point with this standard deviation, with its
- * first prefix and its batch as they are by default. */
-size_t scatter_runs_of_rule(double deviation, double half_width);
+/* The number of runs at which a campaign's stopping rule (design_stopping_judge()) ends a point with this mean and
+ * standard deviation, with its first prefix and its batch as they are by default. */
+size_t scatter_runs_of_rule(double mean, double deviation, double half_width, bool share);
 
 /* Edges of a histogram: Freedman and Diaconis's width 2 (q75 - q25)/n^(1/3), rounded to 1, 2 or 5 times a power of ten;
  * 1 to SCATTER_BINS bins. */

@@ -332,11 +332,11 @@ void quantity_tell_resolution(struct store *store, const char *name, const struc
   if (ask_resolution(store, 0, name, &resolution, NULL))
     return;
   uncertainty_resolution(&resolution, text);
-  fprintf(stderr, "clast: %s: intervals are over %s (95 %%; none where all are equal to 14 digits); %s\n", name,
+  fprintf(stderr, "clast: %s: intervals are over %s (95 %%%s); %s\n", name,
           !pooled || !*pooled->inputs ? "seeds"
           : pooled->single            ? "points, of one point over seeds"
                                       : "points",
-          text);
+          views_range(name).share ? "" : "; none where all are equal to 14 digits", text);
 }
 
 void quantity_tell_resolutions(struct store *store, const char *names, const struct ask_group_pooled *pooled) {

@@ -25,8 +25,10 @@ enum {
   UNIT_TEXT = 32 /* with the space before it */
 };
 
-int64_t accuracy_seeds(double deviation, double margin) {
-  const int64_t seeds = (int64_t)scatter_runs_needed(deviation, margin);
+int64_t accuracy_seeds(double mean, double deviation, double margin, bool share) {
+  const int64_t seeds = (int64_t)(share && deviation > SAMPLE_ROUNDING * fabs(mean)
+                                      ? scatter_runs_of_share(mean, deviation, margin)
+                                      : scatter_runs_needed(deviation, margin));
   if (seeds == 0 || seeds > MOST_SEEDS)
     return 0;
   return seeds > FEWEST_SEEDS ? seeds : FEWEST_SEEDS;
@@ -37,6 +39,7 @@ struct finding {
   struct accuracy *accuracy;
   struct store *store;
   const struct scene *scene; /* the one that was studied */
+  const struct field *row;   /* of the quantity; NULL: an exponent */
   char results[ASK_DOUBTS_RESULTS];
   double beyond; /* sum over knobs without a limit: what a law of the least order leaves beyond the finest level, by the
                     changes from coarser ones; NaN: not known */
@@ -45,7 +48,7 @@ struct finding {
   double step[KNOB_LEVELS], change[KNOB_LEVELS];
   char marks[ACCURACY_MARKS];    /* of the level that becomes an option */
   struct convergence_row finest; /* the reference of the last knob that has one, for levels finer than it */
-  bool studied, share;
+  bool studied;
   int unstudied;   /* knobs of resolution with levels, but without the scene's own one */
   double own_mean; /* with the scene's own settings: of the knob with most seeds there */
   int64_t own_n;
@@ -171,7 +174,7 @@ static double need_of(const struct accuracy_option *option) {
 
 /* As many seeds as the time of a point allows, and no more than make the interval 1 % of the error. */
 static int64_t seeds_in(const struct accuracy_option *option, double point_s) {
-  const int64_t useful = accuracy_seeds(option->deviation, 0.01 * resolution_of(option));
+  const int64_t useful = accuracy_seeds(option->mean, option->deviation, 0.01 * resolution_of(option), option->share);
   const int64_t most = useful ? useful : MOST_SEEDS;
   const double seeds = floor(point_s / option->run_s);
   return seeds < FEWEST_SEEDS ? 0 : seeds < (double)most ? (int64_t)seeds : most;
@@ -180,7 +183,10 @@ static int64_t seeds_in(const struct accuracy_option *option, double point_s) {
 static double total_of(const struct accuracy_option *option, int64_t seeds) {
   if (seeds == 0)
     return NAN;
-  return resolution_of(option) + sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
+  const double student = sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
+  const double of_share = option->share ? sample_share_half_width((size_t)seeds, option->mean, option->deviation, 0.95)
+                                        : (double)NAN;
+  return resolution_of(option) + fmax(student, of_share);
 }
 
 static status add_option(struct finding *finding, const struct convergence_row *row, struct accuracy_option *option,
@@ -190,16 +196,18 @@ static status add_option(struct finding *finding, const struct convergence_row *
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
+  option->share = finding->row && field_is_share(finding->row);
   option->mean = option->own ? finding->own_mean : row->mean;
   option->n = option->own ? finding->own_n : row->n;
-  option->most = most_of(finding->share, option->mean);
+  option->most = most_of(option->share, option->mean);
   option->within = finding->campaign->accuracy_within * (finding->campaign->accuracy_of_value ? fabs(option->mean) : 1);
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
     option->beyond = isnan(finding->beyond) ? (double)NAN : fmin(finding->beyond, option->most - option->error);
   const double middle = fabs(isnan(row->distance) ? row->bias : row->distance);
   option->middle = row->resolution > 0 && middle < row->resolution ? middle / row->resolution : 1;
   option->deviation = row->deviation;
-  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(row->deviation, option->within - resolution_of(option))
+  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(option->mean, row->deviation,
+                                                            option->within - resolution_of(option), option->share)
                                            : seeds_in(option, accuracy->point_s);
   option->total = total_of(option, option->seeds);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
@@ -403,7 +411,7 @@ static status read_study(struct finding *finding, struct store *store, const str
   finding->unstudied = 0;
   TRY(ask_doubts_results(store, quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
-  finding->share = quantity.row && field_is_share(quantity.row);
+  finding->row = quantity.row;
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)

@@ -24,6 +24,7 @@ struct accuracy_option {
   int64_t n;     /* seeds of this mean */
   double within; /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
   double most;   /* no error of a share is larger than its distance from the farther end; else infinite */
+  bool share;    /* of a share, whose intervals in tables are wider than Student's */
   double deviation; /* standard deviation between seeds */
   int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
   double total;     /* error, beyond if known, and half width of the 95 % interval of the mean of so many seeds; NaN
@@ -77,8 +78,9 @@ enum accuracy_print { ACCURACY_SILENT, ACCURACY_NOTE, ACCURACY_TEXT, ACCURACY_JS
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error);
 
-/* Number of seeds whose interval's half width is at most `margin`, by Student's t; at least 3. 0: margin is not above
+/* Number of seeds whose interval in a table has at most the half width `margin`: Student's, or that of a share unless
+ * its runs are equal; at least 3. 0: margin is not above
  * 0, the scatter is not known, or more than 10 000 seeds would be needed, where finer settings are better. */
-int64_t accuracy_seeds(double deviation, double margin);
+int64_t accuracy_seeds(double mean, double deviation, double margin, bool share);
 
 #endif

@@ -273,19 +273,27 @@ void design_sobol_free(struct design_sobol *sobol) {
 
 /* ---- The stopping rule: batches of replicates until the interval is narrow enough ---- */
 
+/* NaN: all values are equal; tables have a bound then, and the rule its own. */
+static double table_half_width(const struct design_stopping *rule, const struct sample_summary *mean) {
+  return sample_share_half_width(mean->n, mean->mean, mean->standard_deviation, rule->level);
+}
+
 double design_stopping_reached(const struct design_stopping *rule, const double *values, int64_t prefix) {
   const struct sample_summary mean = sample_summarise((size_t)prefix, values, rule->level);
   const double one = rule->of_mean ? fabs(mean.mean) : 1;
   if (rule->fixed || mean.n < 2 || !(one > 0))
     return NAN;
-  return sample_rule_half_width(mean.n, mean.standard_deviation, one * rule->half_width, rule->level) / one;
+  const double of_rule = sample_rule_half_width(mean.n, mean.standard_deviation, one * rule->half_width, rule->level);
+  return (rule->share ? fmax(of_rule, table_half_width(rule, &mean)) : of_rule) / one;
 }
 
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix) {
   if (rule->fixed)
     return DESIGN_FIXED;
-  const double one = rule->of_mean ? fabs(sample_summarise((size_t)*prefix, values, rule->level).mean) : 1;
-  if (sample_may_stop((size_t)*prefix, values, one * rule->half_width, rule->level, (size_t)rule->minimum))
+  const struct sample_summary mean = sample_summarise((size_t)*prefix, values, rule->level);
+  const double wanted = (rule->of_mean ? fabs(mean.mean) : 1) * rule->half_width;
+  if (sample_may_stop((size_t)*prefix, values, wanted, rule->level, (size_t)rule->minimum) &&
+      !(rule->share && table_half_width(rule, &mean) > wanted))
     return DESIGN_INTERVAL_MET;
   if (*prefix >= rule->maximum)
     return DESIGN_CAP_REACHED;

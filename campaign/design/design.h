@@ -123,6 +123,7 @@ void design_sensitivity_row(const struct design_sensitivity *design, size_t row,
 struct design_stopping {
   bool fixed; /* `minimum` replicates, the rule is not applied */
   int64_t minimum, batch, maximum;
+  bool share;               /* of a share: its interval in tables is wider than Student's, and must be as narrow, too */
   bool of_mean;             /* half_width is a share of the mean, else in the quantity's SI unit */
   double half_width, level; /* of the mean's confidence interval */
 };

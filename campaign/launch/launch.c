@@ -128,6 +128,11 @@ static void print_summary(const struct driver_summary *summary, const char *stor
   if (summary->points_interval_met || summary->points_cap_reached)
     fprintf(stderr, ": %" PRIu64 " met seeds.until, %" PRIu64 " ended at seeds.max before that",
             summary->points_interval_met, summary->points_cap_reached);
+  if (summary->points_equal)
+    fprintf(stderr,
+            "\n%" PRIu64 " of those that met it %s runs that are all equal: tables have the bounds of what so few "
+            "may have missed, which are wider than asked",
+            summary->points_equal, summary->points_equal == 1 ? "has" : "have");
   fputc('\n', stderr);
   if (summary->runs_censored)
     fprintf(stderr, "%" PRId64 " run%s ended at stop.end_time: fragments may still have been breaking\n",

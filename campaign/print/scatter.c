@@ -37,9 +37,10 @@ static void row(const struct printing *printing, const char *name, double value,
 static void print_runs_needed(const struct printing *printing, const struct sample_summary *mean) {
   const struct scatter_choice *choice = printing->choice;
   const double wanted = choice->half_width * (choice->relative ? fabs(mean->mean) : 1);
-  const size_t runs = printing->pools->range.share ? scatter_runs_of_share(mean->mean, mean->standard_deviation, wanted)
-                                                   : scatter_runs_needed(mean->standard_deviation, wanted);
-  const size_t by_rule = scatter_runs_of_rule(mean->standard_deviation, wanted);
+  const bool share = printing->pools->range.share;
+  const size_t runs = share ? scatter_runs_of_share(mean->mean, mean->standard_deviation, wanted)
+                            : scatter_runs_needed(mean->standard_deviation, wanted);
+  const size_t by_rule = scatter_runs_of_rule(mean->mean, mean->standard_deviation, wanted, share);
   row(printing, "runs needed", runs ? (double)runs : (double)NAN, NAN, NAN);
   row(printing, "runs needed, seeds.until", by_rule ? (double)by_rule : (double)NAN, NAN, NAN);
 }

@@ -205,7 +205,7 @@ static void count_wide(struct driver *driver, const struct point *point) {
   struct driver_summary *summary = &driver->summary;
   struct sample_summary mean = sample_summarise((size_t)point->prefix, point->values, 0.95);
   const double wanted = campaign->until_half_width * (campaign->until_of_value ? fabs(mean.mean) : 1);
-  const size_t runs = scatter_runs_of_rule(mean.standard_deviation, wanted);
+  const size_t runs = scatter_runs_of_rule(mean.mean, mean.standard_deviation, wanted, point->rule.share);
   if (summary->widest_point && (summary->widest_runs == 0 || (runs && runs <= summary->widest_runs)))
     return;
   if (field_is_share(driver->row))
@@ -214,6 +214,15 @@ static void count_wide(struct driver *driver, const struct point *point) {
   summary->widest_half_width = mean.half_width;
   summary->widest_mean = mean.mean;
   summary->widest_runs = runs;
+}
+
+/* Is the interval of a share in a table as narrow as asked? That of equal runs is a bound, which the rule does not
+ * compare. */
+static bool is_narrow(const struct point *point) {
+  struct sample_summary mean = sample_summarise((size_t)point->prefix, point->values, point->rule.level);
+  const double one = point->rule.of_mean ? fabs(mean.mean) : 1;
+  sample_of_share(&mean, point->rule.level);
+  return !(fmax(mean.high - mean.mean, mean.mean - mean.low) > one * point->rule.half_width && isnan(mean.half_width));
 }
 
 /* Judges the point's prefixes and updates the prefix in the store. When the point is decided, marks the runs whose
@@ -227,6 +236,7 @@ static status judge(struct driver *driver, struct point *point, struct error *er
     driver->summary.points_done++;
     driver->summary.points_interval_met += point->verdict == DESIGN_INTERVAL_MET;
     driver->summary.points_cap_reached += point->verdict == DESIGN_CAP_REACHED;
+    driver->summary.points_equal += point->verdict == DESIGN_INTERVAL_MET && point->rule.share && !is_narrow(point);
     if (point->verdict == DESIGN_CAP_REACHED)
       count_wide(driver, point);
     point_want_fields(point, driver->campaign);

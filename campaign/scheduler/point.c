@@ -18,6 +18,10 @@ struct point *point_create(const struct campaign *campaign, struct scene *scene)
                                          .half_width = campaign->until_half_width,
                                          .level = campaign->until_level};
   point->rule.fixed = campaign->per_point > 0;
+  struct error ignored;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(scene->kind, campaign->until_quantity, &of_outcome, &ignored);
+  point->rule.share = row && field_is_share(row);
   point->prefix = point->rule.minimum;
   point->reached = NAN;
   point->cost.work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;

@@ -161,6 +161,7 @@ struct driver_summary {
   int64_t fields_written;  /* HDF5 files kept */
   int64_t attempts_failed; /* attempts that failed in this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
+  uint64_t points_equal;    /* of those that met it: a share whose runs are equal, with a wider bound in tables */
   int64_t widest_point;     /* of those that reached the cap, the one that needs the most runs, and how many (0: not */
   double widest_half_width; /* known); its 95 % half width as in tables (NaN: none) and its mean */
   double widest_mean;

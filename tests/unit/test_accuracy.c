@@ -21,18 +21,31 @@ static char path[64];
 static void seeds_for_a_margin(void **state) {
   (void)state;
   /* t(n - 1) s/sqrt n at n = 10: 2.262157/3.162278 = 0.715357 */
-  assert_int_equal(accuracy_seeds(1, 0.71536), 10);
-  assert_int_equal(accuracy_seeds(1, 0.71535), 11);
-  assert_int_equal(accuracy_seeds(1, 100), 3);
-  assert_int_equal(accuracy_seeds(0, 1e-9), 3);
-  assert_int_equal(accuracy_seeds(1, 0), 0);
-  assert_int_equal(accuracy_seeds(1, 0.0195), 0); /* more than 10 000 */
-  assert_int_equal(accuracy_seeds(NAN, 1), 0);
+  assert_int_equal(accuracy_seeds(0.5, 1, 0.71536, false), 10);
+  assert_int_equal(accuracy_seeds(0.5, 1, 0.71535, false), 11);
+  assert_int_equal(accuracy_seeds(0.5, 1, 100, false), 3);
+  assert_int_equal(accuracy_seeds(0.5, 0, 1e-9, false), 3);
+  assert_int_equal(accuracy_seeds(0.5, 1, 0, false), 0);
+  assert_int_equal(accuracy_seeds(0.5, 1, 0.0195, false), 0); /* more than 10 000 */
+  assert_int_equal(accuracy_seeds(0.5, NAN, 1, false), 0);
   for (double margin = 0.5; margin > 0.02; margin /= 1.7) {
-    const size_t n = (size_t)accuracy_seeds(1, margin);
+    const size_t n = (size_t)accuracy_seeds(0.5, 1, margin, false);
     assert_true(sample_student(n, 0.95) / sqrt((double)n) <= margin);
     assert_true(sample_student(n - 1, 0.95) / sqrt((double)(n - 1)) > margin);
   }
+}
+
+/* A table shows no wider interval than was reckoned with: that of a share. Equal runs have their bound. */
+static void seeds_of_a_share(void **state) {
+  (void)state;
+  for (double mean = 0.9; mean < 1; mean += 0.03) {
+    const size_t n = (size_t)accuracy_seeds(mean, 0.1, 0.02, true);
+    struct sample_summary of = {.n = n, .mean = mean, .standard_deviation = 0.1};
+    of.half_width = sample_student(n, 0.95) * 0.1 / sqrt((double)n);
+    sample_of_share(&of, 0.95);
+    assert_true(of.half_width <= 0.02 && n > (size_t)accuracy_seeds(mean, 0.1, 0.02, false));
+  }
+  assert_int_equal(accuracy_seeds(0.9, 0, 0.02, true), 3);
 }
 
 static struct campaign *campaign_of(const char *text) {
@@ -321,7 +334,7 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_string_equal(chosen->own ? "own" : chosen->setting, setting);
   assert_int_equal(chosen->seeds, seeds);
-  const double total = error_of_resolution + sample_student((size_t)seeds, 0.95) * 0.02 / sqrt((double)seeds);
+  const double total = error_of_resolution + sample_share_half_width((size_t)seeds, 0.3, 0.02, 0.95);
   assert_true(fabs(chosen->total - total) < 1e-12);
   bool open = true;
   assert_true(chosen->total == accuracy_least(&accuracy, accuracy.point_s, &open) && !open);
@@ -331,7 +344,8 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
   campaign_free(campaign);
 }
 
-/* t(n - 1) 0.02/sqrt n: n = 3 0.0497, 4 0.0318, 6 0.0210, 8 0.0167, 16 0.0107, 24 0.00845, 48 0.00581. */
+/* Half widths of a mean 0.3 are 1.025 times t(n - 1) 0.02/sqrt n: n = 3 0.0497, 4 0.0318, 6 0.0210, 8 0.0167, 16
+ * 0.0107, 24 0.00845, 48 0.00581 (sums below without the 1.025). */
 static void the_least_error_in_a_time(void **state) {
   (void)state;
   struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
@@ -403,6 +417,7 @@ static void without_a_study_the_command_is_named(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
+                                     cmocka_unit_test(seeds_of_a_share),
                                      cmocka_unit_test(the_cheapest_that_reaches_it),
                                      cmocka_unit_test(finer_than_any_level),
                                      cmocka_unit_test(a_share_is_one_of_the_settings_own_mean),

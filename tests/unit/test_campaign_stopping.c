@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
+#include "analysis/statistics/statistics.h"
 #include "campaign/design/design.h"
 #include "campaign/scheduler/point.h"
 #include "engine/random.h"
@@ -52,6 +53,30 @@ static void judges_prefixes(void **state) {
   rule.fixed = true;
   assert_true(isnan(design_stopping_reached(&rule, values, prefix)));
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_FIXED);
+}
+
+/* A point of a share that has met the rule has no wider interval in a table. Here 2 of 25 values are 0.62 and the
+ * others 1: at 50 the guarded Student's interval is +- 0.0499, that of the share +- 0.056. Equal values end it at 50.
+ */
+static void the_table_of_a_share_is_no_wider(void **state) {
+  (void)state;
+  double values[400];
+  for (int r = 0; r < 400; r++)
+    values[r] = r % 25 < 2 ? 0.62 : 1;
+  struct design_stopping rule = {.minimum = 30, .batch = 10, .maximum = 400, .half_width = 0.05, .level = 0.95};
+  int64_t prefix = 50;
+  assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_INTERVAL_MET); /* of any other result */
+  rule.share = true;
+  assert_true(fabs(design_stopping_reached(&rule, values, prefix) - 0.056) < 0.001);
+  while (design_stopping_judge(&rule, values, &prefix) == DESIGN_GROW)
+    assert_true(prefix < 100);
+  struct sample_summary mean = sample_summarise((size_t)prefix, values, 0.95);
+  sample_of_share(&mean, 0.95);
+  assert_true(prefix > 50 && mean.half_width <= 0.05 && mean.half_width > 0.04);
+  for (int r = 0; r < 400; r++)
+    values[r] = 1;
+  prefix = 50;
+  assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_INTERVAL_MET);
 }
 
 /* A farm of 32 slots whose runs take the longer the larger their outcome (correlation 0.8 of the logarithm), played
@@ -186,8 +211,10 @@ static void costs_are_learnt(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(judges_prefixes),
+                                     cmocka_unit_test(the_table_of_a_share_is_no_wider),
                                      cmocka_unit_test(prefixes_are_unbiased_where_first_finished_is_not),
                                      cmocka_unit_test(a_failed_attempt_is_wanted_again),
-                                     cmocka_unit_test(fields_of_the_extremes), cmocka_unit_test(costs_are_learnt)};
+                                     cmocka_unit_test(fields_of_the_extremes),
+                                     cmocka_unit_test(costs_are_learnt)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

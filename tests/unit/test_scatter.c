@@ -117,7 +117,7 @@ static void runs_for_an_interval_are_those_of_tables_and_of_the_rule(void **stat
       sample_of_share(&of, 0.95);
       assert_int_equal(of.half_width <= half_width, n == share);
     }
-    const size_t rule = scatter_runs_of_rule(s, half_width);
+    const size_t rule = scatter_runs_of_rule(mean, s, half_width, false);
     assert_true(rule >= SAMPLE_FIRST && (rule - SAMPLE_FIRST) % SAMPLE_BATCH == 0 && rule > plain);
     size_t n = SAMPLE_FIRST;
     for (; n < MOST; n += SAMPLE_BATCH) { /* values with this standard deviation, whatever n is */
@@ -127,14 +127,16 @@ static void runs_for_an_interval_are_those_of_tables_and_of_the_rule(void **stat
         break;
     }
     assert_int_equal(n, rule);
+    const size_t of_share = scatter_runs_of_rule(mean, s, half_width, true), least = share > rule ? share : rule;
+    assert_true(of_share >= least && of_share < least + SAMPLE_BATCH); /* both intervals are narrow enough */
   }
   /* Equal runs: Student's t knows no width, a share has one, and the guard of the rule ends it at 50. */
-  assert_int_equal(scatter_runs_of_rule(0, 0.02), 50);
+  assert_int_equal(scatter_runs_of_rule(0.9, 0, 0.02, true), 50);
   const size_t n = scatter_runs_of_share(0.9, 0, 0.02); /* 0.9 (1 - 0.05^(1/n)) <= 0.02: n = 134 */
   assert_int_equal(n, 134);
   assert_int_equal(scatter_runs_of_share(NAN, 1, 1), 0);
   assert_int_equal(scatter_runs_of_share(0.5, NAN, 1), 0);
-  assert_int_equal(scatter_runs_of_rule(NAN, 1), 0);
+  assert_int_equal(scatter_runs_of_rule(0.5, NAN, 1, true), 0);
 }
 
 /* 95 % intervals of the median hold it in 95 % of the samples, of a normal and of a skewed law. */
