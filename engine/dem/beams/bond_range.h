@@ -123,21 +123,21 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
   for (int a = 0; a < 3; a++) {
     for (int b = 0; b < 3; b++) {
       const lanes_d on_a = lanes_rounded(out[1][b][a] / (out[1][b][a] - out[1][b][a + 1]));
-      const lanes_d on_b = lanes_rounded(out[0][a][b] / (out[0][a][b] - out[0][a][b + 1]));
-      lanes_i start_a = out[1][b][a] > 0.0, end_a = out[1][b][a + 1] > 0.0;
-      lanes_d start_b = lanes_mask(out[0][a][b] > 0.0, on_b);
+      const lanes_d on_b = lanes_quotient(out[0][a][b], out[0][a][b] - out[0][a][b + 1]);
+      lanes_condition start_a = lanes_positive(out[1][b][a]), end_a = lanes_positive(out[1][b][a + 1]);
+      lanes_condition start_b = lanes_positive(out[0][a][b]);
       if (a + b == 2 && a != 1) { /* sides that can lie in one line (a square lattice): counted once, as grain 1's */
         const lanes_d same_a = bond_same_line * (ex[1][b] * ex[1][b] + ey[1][b] * ey[1][b]);
         const lanes_d same_b = bond_same_line * (ex[0][a] * ex[0][a] + ey[0][a] * ey[0][a]);
-        const lanes_i along_a = (lanes_abs(out[1][b][a]) <= same_a) & (lanes_abs(out[1][b][a + 1]) <= same_a);
-        const lanes_i along_b = (lanes_abs(out[0][a][b]) <= same_b) & (lanes_abs(out[0][a][b + 1]) <= same_b);
-        start_a &= ~along_a, end_a &= ~along_a;
-        start_b = lanes_select(along_b, lanes_all(2.0), start_b);
+        const lanes_condition along_a = lanes_within(out[1][b][a], same_a) & lanes_within(out[1][b][a + 1], same_a);
+        const lanes_condition along_b = lanes_within(out[0][a][b], same_b) & lanes_within(out[0][a][b + 1], same_b);
+        start_a &= ~along_a, end_a &= ~along_a, start_b &= ~along_b;
+        enter[1][b] = lanes_raise(along_b, enter[1][b], lanes_all(2.0));
       }
-      enter[0][a] = lanes_max(enter[0][a], lanes_mask(start_a, on_a));
-      leave[0][a] = lanes_min(leave[0][a], lanes_select(end_a, on_a, lanes_all(1.0)));
-      enter[1][b] = lanes_max(enter[1][b], start_b);
-      leave[1][b] = lanes_min(leave[1][b], lanes_select(out[0][a][b + 1] > 0.0, on_b, lanes_all(1.0)));
+      enter[0][a] = lanes_raise(start_a, enter[0][a], on_a);
+      leave[0][a] = lanes_lower(end_a, leave[0][a], on_a);
+      enter[1][b] = lanes_raise(start_b, enter[1][b], on_b);
+      leave[1][b] = lanes_lower(lanes_positive(out[0][a][b + 1]), leave[1][b], on_b);
     }
   }
   for (int k = 0; k < 2; k++)

@@ -140,22 +140,27 @@ LANES_INLINE void overlap_best_side(const struct dem_ring ring[2], struct dem_ov
 /* Pieces of p inside q. A side of p that runs along a side of q to within `tolerance`, m, counts for p if `own`. */
 LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *q, double tolerance, bool own,
                                struct contact_sums *sums) {
+  double same[DEM_MAX_VERTICES + DEM_BLOCK];
+  for (size_t k = 0; k < q->count; k += LANES) {
+    const lanes_d sx = lanes_load(q->x + k + 1) - lanes_load(q->x + k),
+                  sy = lanes_load(q->y + k + 1) - lanes_load(q->y + k);
+    lanes_store(same + k, lanes_sqrt(sx * sx + sy * sy) * tolerance);
+  }
   for (size_t v = 0; v < p->count; v += LANES) {
     const lanes_d x = lanes_load(p->x + v), y = lanes_load(p->y + v);
     const lanes_d ex = lanes_load(p->x + v + 1) - x, ey = lanes_load(p->y + v + 1) - y;
     lanes_d enter = lanes_all(0.0), leave = lanes_all(1.0);
     for (size_t k = 0; k < q->count; k++) {
       const double sx = q->x[k + 1] - q->x[k], sy = q->y[k + 1] - q->y[k];
-      const double same = sqrt(sx * sx + sy * sy) * tolerance;
       lanes_d from = (x - q->x[k]) * sy - (y - q->y[k]) * sx;
       lanes_d to = (x + ex - q->x[k]) * sy - (y + ey - q->y[k]) * sx;
-      const lanes_i along = (lanes_abs(from) <= same) & (lanes_abs(to) <= same);
+      const lanes_i along = (lanes_abs(from) <= same[k]) & (lanes_abs(to) <= same[k]);
       from = lanes_select(along, lanes_all(own ? -1.0 : 1.0), from);
       to = lanes_select(along, lanes_all(own ? -1.0 : 1.0), to);
       /* Infinite where both are outside and equal: nothing is left then. */
       const lanes_d crossing = lanes_rounded(from / (from - to));
-      enter = lanes_max(enter, lanes_mask(from > 0.0, crossing));
-      leave = lanes_min(leave, lanes_select(to > 0.0, crossing, lanes_all(1.0)));
+      enter = lanes_raise(lanes_positive(from), enter, crossing);
+      leave = lanes_lower(lanes_positive(to), leave, crossing);
     }
     contact_add_piece(sums, enter, leave, x, y, ex, ey, own, true);
   }
@@ -313,6 +318,32 @@ LANES_INLINE struct near_candidate near_candidate(const struct dem_system *s, ui
   return (struct near_candidate){near->first, near->second, dem_breaking_contact(s, near->pair)};
 }
 
+/* The pairs of the general list lie far apart in memory. Before the pair at `k`: asks for what the pairs after it need,
+ * in the order in which one address follows from another. */
+LANES_INLINE void near_prefetch(const struct dem_system *s, size_t k) {
+  enum { OUTLINES = 2, COEFFICIENTS = 4, PAIRS = 6 }; /* so many pairs ahead */
+  if (k + PAIRS >= s->general_count)
+    return;
+  const uint32_t *code = &s->general[k];
+  if (code[PAIRS] & DEM_FROM_BOND)
+    __builtin_prefetch(&s->lane_pair[code[PAIRS] & ~DEM_FROM_BOND]);
+  else
+    __builtin_prefetch(&s->near_pair[code[PAIRS]]);
+  const int32_t pair = code[COEFFICIENTS] & DEM_FROM_BOND ? s->lane_pair[code[COEFFICIENTS] & ~DEM_FROM_BOND]
+                                                          : s->near_pair[code[COEFFICIENTS]].pair;
+  if (pair != DEM_NO_PAIR) {
+    __builtin_prefetch(&s->pair[pair]);
+    __builtin_prefetch(&s->pair_contact[pair]);
+    __builtin_prefetch(&s->alive[pair]);
+  }
+  const uint32_t *grain = code[OUTLINES] & DEM_FROM_BOND ? s->pair[s->lane_pair[code[OUTLINES] & ~DEM_FROM_BOND]]
+                                                         : &s->near_pair[code[OUTLINES]].first;
+  for (int end = 0; end < 2; end++) {
+    __builtin_prefetch(&s->outline_x[s->first_vertex[grain[end]]]);
+    __builtin_prefetch(&s->outline_y[s->first_vertex[grain[end]]]);
+  }
+}
+
 LANES_INLINE void near_add(struct near_batch *batch, const struct near_candidate *candidate,
                            const struct dem_overlap *overlap) {
   const struct dem_contact *contact = &candidate->contact;
@@ -342,6 +373,7 @@ LANES_INLINE void near_general(struct dem_system *s, bool measure, enum dem_cont
   struct dem_ring ring[2];
   for (size_t k = 0; k < s->general_count; k++) {
     const uint32_t code = s->general[k];
+    near_prefetch(s, k);
     const struct near_candidate candidate = near_candidate(s, code);
     const uint32_t i = candidate.first, j = candidate.second;
     dem_system_arrays_ring(s, i, 0.0, 0.0, &ring[0]);
