@@ -528,7 +528,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);
   if (*quantity->changing)
-    tell_changing(quantity, "no line joins the points: ", caption, sizeof caption);
+    tell_changing(quantity, plot->places ? "" : "no line joins the points: ", caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }

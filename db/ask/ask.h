@@ -22,7 +22,7 @@ struct ask_choice {
   bool campaigns_alone;
   /* Table axis has only the inputs that tell the chosen points apart: those that a person's campaign (or the chosen
    * one) varies, and those that differ between points with runs and do not follow from a varied name, as a density does
-   * from its material. Any other choice does the same. */
+   * from its material, nor from all that is varied, as a default does. Any other choice does the same. */
   bool axes;
 };
 /* For a reader. Points without a chosen run are no points. An empty choice: all. STATUS_USAGE: unknown point or

@@ -87,7 +87,8 @@ static status make_views(sqlite3 *db, bool summed, struct error *error) {
   return STATUS_OK;
 }
 
-/* The inputs that tables show and charts choose from. `choice` has its views already. */
+/* The inputs that tables show and charts choose from. `choice` has its views already. Derived: a default that follows
+ * from what campaigns vary, as it differs within one that does not vary it. */
 static status choose_axes(sqlite3 *db, const struct ask_choice *choice, struct error *error) {
   return sql_executef(
       db, doing, error,
@@ -104,11 +105,18 @@ static status choose_axes(sqlite3 *db, const struct ask_choice *choice, struct e
       " follows AS (SELECT path, name FROM other JOIN (SELECT DISTINCT path AS name FROM given WHERE path LIKE "
       "   '%%.name') ON path <> name AND substr(path, 1, length(name) - 4) = substr(name, 1, length(name) - 4)"
       "   WHERE NOT EXISTS (SELECT 1 FROM given v JOIN given n USING (point_id) WHERE v.path = other.path AND n.path ="
-      "   name GROUP BY n.value HAVING count(DISTINCT ifnull(v.value, '')) > 1))"
+      "   name GROUP BY n.value HAVING count(DISTINCT ifnull(v.value, '')) > 1)),"
+      " place AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v) FROM (SELECT path || quote(value) AS v FROM "
+      "   main.point_input i WHERE i.point_id = c.point_id AND path IN (SELECT path FROM varied) ORDER BY path)) AS "
+      "   inputs FROM counted c),"
+      " derived AS (SELECT path FROM other WHERE EXISTS (SELECT 1 FROM given JOIN campaign_point USING (point_id) JOIN "
+      "   campaign USING (campaign_id) WHERE given.path = other.path AND (%d OR NOT %s) GROUP BY campaign_id HAVING "
+      "   count(DISTINCT ifnull(value, '')) > 1) AND NOT EXISTS (SELECT 1 FROM given JOIN place USING (point_id) WHERE "
+      "   given.path = other.path GROUP BY inputs HAVING count(DISTINCT ifnull(value, '')) > 1))"
       " SELECT path FROM main.axis WHERE path IN (SELECT path FROM varied) OR (path IN (SELECT path FROM other) AND "
-      "path NOT IN (SELECT path FROM follows));"
+      "path NOT IN (SELECT path FROM follows UNION SELECT path FROM derived));"
       "CREATE TEMP VIEW axis AS SELECT * FROM main.axis WHERE path IN (SELECT path FROM temp.chosen_axis)",
-      choice->campaign != NULL, CAMPAIGN_IS_ROUND);
+      choice->campaign != NULL, CAMPAIGN_IS_ROUND, choice->campaign != NULL, CAMPAIGN_IS_ROUND);
 }
 
 static status choose(struct store *store, const struct ask_choice *choice, struct error *error) {

@@ -387,6 +387,26 @@ static void curves_are_drawn(void **state) {
   assert_int_equal(curves("none.png", 9, both), STATUS_USAGE);
 }
 
+/* Bars of the resolution of two series with the same x and y do not hide each other: they are some pixels apart. */
+static void thin_bars_stand_apart(void **state) {
+  (void)state;
+  for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
+    const struct picture_mean mean[] = {{1, 0.5, NAN, NAN, 0.1, false},
+                                        {logarithmic ? 1000 : 2, 0.5, NAN, NAN, 0.1, false}};
+    const struct picture_curve both[] = {{.label = "a", .count = 2, .mean = mean},
+                                         {.label = "b", .count = 2, .mean = mean}};
+    static const char *const colours[] = {"stroke='rgb(  0, 114, 178)'", "stroke='rgb(213,  94,   0)'"};
+    double x[2] = {NAN, NAN};
+    assert_int_equal(curves("thin.svg", 2, both), STATUS_OK);
+    for (int c = 0; c < 2; c++) { /* its first path is the bar at the first x */
+      const char *path = strstr(text_of(at("thin.svg")), colours[c]);
+      assert_non_null(path);
+      assert_int_equal(sscanf(strstr(path, "d='M") + 4, "%lf", &x[c]), 1);
+    }
+    assert_true(x[1] - x[0] > 4 && x[1] - x[0] < 20);
+  }
+}
+
 /* Text from users reaches the picture as plain text: no command, no markup, no file. */
 static void hostile_text_is_text(void **state) {
   (void)state;
@@ -644,6 +664,7 @@ int main(int count, char **arguments) {
       cmocka_unit_test(profiles_are_drawn),
       cmocka_unit_test(frame_holds_the_projectile),
       cmocka_unit_test(curves_are_drawn),
+      cmocka_unit_test(thin_bars_stand_apart),
       cmocka_unit_test(hostile_text_is_text),
       cmocka_unit_test(missing_gnuplot_is_told),
       cmocka_unit_test(errors_leave_nothing),
@@ -664,6 +685,9 @@ int main(int count, char **arguments) {
                            "curves.gp",
                            "curves.dat",
                            "narrow.pdf",
+                           "thin.svg",
+                           "thin.gp",
+                           "thin.dat",
                            "narrow.gp",
                            "narrow.dat",
                            "one.gp",

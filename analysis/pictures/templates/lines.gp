@@ -14,6 +14,9 @@ set offsets 0, 0, graph 0.05, graph 0.05
 set key below left Left reverse samplen 2.5 maxcols legend_columns noenhanced
 set key title ' ' # room below the name of the axis
 beside(x, i) = x + (i - (series + 1) / 2.) * 0.8 / series
+# thin bars of several series would lie on each other
+apart(x, i) = log_x ? x * (1.0 * x_high / x_low)**(0.008 * (i - (series + 1) / 2.)) \
+                    : x + 0.008 * (x_high - x_low) * (i - (series + 1) / 2.)
 if (places > 0) {
   unset logscale x
   set xtics format '' noenhanced
@@ -28,7 +31,7 @@ if (places > 0) {
        for [i = 1:series] data index i - 1 using (beside($1, i)):($7 > 0 ? $2 : NaN):('!') with labels offset 1.1, 0.5 notitle
 } else {
 plot for [i = 1:series] data index i - 1 using 1:(band[i] > 0 ? $3 : NaN):4 with filledcurves lt i fs transparent solid 0.2 noborder notitle, \
-     for [i = 1:series] data index i - 1 using 1:($5 == $5 ? $2 : NaN):5:6 with yerrorbars lt i dt 1 lw 0.6 ps 0 notitle, \
+     for [i = 1:series] data index i - 1 using (apart($1, i)):($5 == $5 ? $2 : NaN):5:6 with yerrorbars lt i dt 1 lw 0.6 ps 0 notitle, \
      for [i = 1:series] data index i - 1 using 1:(band[i] == 0 && $3 == $3 ? $2 : NaN):3:4 with yerrorbars lt i dt 1 ps 1.2 notitle, \
      for [i = 1:series] data index i - 1 using 1:2 with linespoints lt i ps (band[i] > 0 ? 0 : 1.2) title label[i], \
      for [i = 1:series] data index i - 1 using 1:($7 > 0 ? $2 : NaN):('!') with labels offset 1.1, 0.5 notitle
