@@ -280,7 +280,9 @@ function resolutionSentence(rows) {
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;
   const most = studied.reduce((one, row) => (row.resolution > one.resolution ? row : one));
   const verdict = ['diverges', 'at-least', 'known'].find((word) => studied.some((row) => row.verdict === word)) ?? 'no-difference';
-  return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${verdict === 'known' ? 'up to ' : ''}${resolutionText({...most, verdict})}.${weak}`;
+  const worst = studied.filter((row) => row.verdict === verdict).length, unbounded = {diverges: 'it does not converge', 'at-least': 'no limit is seen'}[verdict];
+  const some = unbounded && studied.length > 1 ? `at ${worst} of them ${unbounded}, and the largest error is ` : verdict === 'known' ? 'up to ' : '';
+  return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${some}${resolutionText({...most, verdict})}.${weak}`;
 }
 
 // Inputs that are no axis and change from dot to dot.

@@ -125,21 +125,33 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
     snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; %s measures it", converge);
     return;
   case ASK_RESOLUTION_DIVERGES:
-    snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (%s)", converge);
-    return;
+    if (resolution->of_verdict >= resolution->points) {
+      snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (%s)", converge);
+      return;
+    }
+    text_append(text, UNCERTAINTY_TEXT, "resolution: does not converge at %" PRId64 " of %" PRId64 " points",
+                resolution->of_verdict, resolution->points);
+    if (resolution->studied > resolution->of_verdict)
+      text_append(text, UNCERTAINTY_TEXT, "; the largest error of the others is %.2g (%s)", resolution->half_width,
+                  resolution->knobs);
+    break;
   case ASK_RESOLUTION_NO_DIFFERENCE:
     text_append(text, UNCERTAINTY_TEXT, "no difference seen (resolution: %s)", resolution->knobs);
     break;
   case ASK_RESOLUTION_KNOWN:
-  case ASK_RESOLUTION_AT_LEAST: {
-    const bool known = resolution->verdict == ASK_RESOLUTION_KNOWN;
-    text_append(text, UNCERTAINTY_TEXT, "%s%s %.2g (resolution: %s)", known && resolution->points > 1 ? "up to " : "",
-                known ? "\xc2\xb1" : ">=", resolution->half_width, resolution->knobs);
-  }
+    text_append(text, UNCERTAINTY_TEXT, "%s\xc2\xb1 %.2g (resolution: %s)", resolution->points > 1 ? "up to " : "",
+                resolution->half_width, resolution->knobs);
+    break;
+  case ASK_RESOLUTION_AT_LEAST:
+    if (resolution->points > 1)
+      text_append(text, UNCERTAINTY_TEXT,
+                  "no limit is seen at %" PRId64 " of %" PRId64 " points, the largest error is ",
+                  resolution->of_verdict, resolution->points);
+    text_append(text, UNCERTAINTY_TEXT, ">= %.2g (resolution: %s)", resolution->half_width, resolution->knobs);
   }
   if (resolution->studied < resolution->points)
-    text_append(text, UNCERTAINTY_TEXT, "; studied at %lld of %lld points, %s studies others",
-                (long long)resolution->studied, (long long)resolution->points, converge);
+    text_append(text, UNCERTAINTY_TEXT, "; studied at %" PRId64 " of %" PRId64 " points, %s studies others",
+                resolution->studied, resolution->points, converge);
 }
 
 void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {

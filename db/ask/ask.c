@@ -388,8 +388,8 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
 
   ANSWER found = answer_to(
       store, error,
-      "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least'), "
-      "max(verdict = 'known') "
+      "SELECT count(*), count(half_width), max(half_width), sum(verdict = 'diverges'), sum(verdict = 'at-least'), "
+      "sum(verdict = 'known'), max(iif(verdict <> 'diverges', half_width, NULL)) "
       "FROM (SELECT point_id, max(results_version) AS results_version FROM "
       "point_total"
       "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
@@ -398,12 +398,15 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   if (answer_next(&found)) {
     out->points = answer_integer(&found, 0);
     out->studied = answer_integer(&found, 1);
-    out->half_width = answer_real(&found, 2);
+    static const enum ask_resolution_verdict worst[] = {ASK_RESOLUTION_DIVERGES, ASK_RESOLUTION_AT_LEAST,
+                                                        ASK_RESOLUTION_KNOWN};
+    size_t i = 0;
+    while (i < 3 && !answer_integer(&found, 3 + i))
+      i++;
     if (out->studied > 0)
-      out->verdict = answer_integer(&found, 3)   ? ASK_RESOLUTION_DIVERGES
-                     : answer_integer(&found, 4) ? ASK_RESOLUTION_AT_LEAST
-                     : answer_integer(&found, 5) ? ASK_RESOLUTION_KNOWN
-                                                 : ASK_RESOLUTION_NO_DIFFERENCE;
+      out->verdict = i < 3 ? worst[i] : ASK_RESOLUTION_NO_DIFFERENCE;
+    out->of_verdict = i < 3 ? answer_integer(&found, 3 + i) : out->studied;
+    out->half_width = answer_real(&found, i == 0 ? 6 : 2);
   }
   TRY(answer_end(&found));
   if (out->studied == 0)

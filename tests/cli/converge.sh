@@ -475,6 +475,27 @@ expect 0 "$clast" plan wide.yaml --store one.db
 prints "this is known of the scene with its own values of what varies; the others have errors"
 expect 0 "$clast" converge each.yaml --knob grains --seeds 2 --within off
 same "$(grep -c 'is left out: ' err) $(grep 'is left out: ' err | sort -u | wc -l)" "2 2" "remarks on levels, each once"
+# One sentence for a table: how many of its points do not converge, and the largest error of the others.
+expect 0 "$clast" run each.yaml --seeds 2 --quiet --csv -j 2
+python - <<'PY'
+import sqlite3
+db = sqlite3.connect("each.db")
+db.execute("update convergence set open = 0, resolution = 0.0123, mean = 0.5 where quantity = 'largest_fraction'")
+db.execute("update convergence_limit set verdict = 'limit'")
+db.execute("update convergence_limit set verdict = 'no-limit' where base_point_id = (select min(base_point_id) from convergence)")
+db.commit()
+PY
+expect 0 "$clast" stats each.db
+says "resolution: does not converge at 1 of 2 points; the largest error of the others is 0.0"
+python - <<'PY'
+import sqlite3
+db = sqlite3.connect("each.db")
+db.execute("update convergence_limit set verdict = 'limit'")
+db.execute("update convergence set open = 1 where base_point_id = (select min(base_point_id) from convergence)")
+db.commit()
+PY
+expect 0 "$clast" stats each.db
+says "no limit is seen at 1 of 2 points, the largest error is >= 0.0"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 ! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
@@ -489,4 +510,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 123
+done_after 126
