@@ -268,36 +268,51 @@ static void judge(struct rounds *rounds) {
     end_ladder(ladder, "the largest number of seeds has run");
 }
 
-/* How much there is to do at least, as soon as a run has told how long one takes. */
-static void tell_size(struct rounds *rounds) {
+/* Runs that the first seeds of all levels lack. *seconds: their wall time. All knobs of a point share its own level. */
+static int64_t count_missing(const struct rounds *rounds, int64_t seeds, double *seconds) {
   const struct study *study = rounds->study;
-  const int64_t seeds = study->rule.first_seeds;
-  size_t points = 0, knobs = 0;
   int64_t runs = 0;
-  double seconds = 0;
+  *seconds = 0;
   for (size_t i = 0; i < study->ladder_count; i++) {
     const struct study_ladder *ladder = &study->ladder[i];
     const bool new_point = i == 0 || ladder->base != study->ladder[i - 1].base;
-    points += new_point;
-    knobs += points == 1; /* every point has the same */
     for (size_t l = 0; l < ladder->levels.count; l++)
-      if (!ladder->left_out[l] && (new_point || !ladder->levels.level[l].base)) { /* all knobs share the own level */
+      if (!ladder->left_out[l] && (new_point || !ladder->levels.level[l].base)) {
         for (int64_t s = 0; s < seeds; s++)
           runs += !ladder->ran[l][s];
-        seconds += cost_of(rounds, ladder, l, seeds) / fmax(1, rounds->slots);
+        *seconds += cost_of(rounds, ladder, l, seeds) / fmax(1, rounds->slots);
       }
   }
+  return runs;
+}
+
+/* How much there is to do at least and at most, as soon as a run has told how long one takes. */
+static void tell_size(struct rounds *rounds) {
+  const struct study *study = rounds->study;
+  const struct study_rule *rule = &study->rule;
+  size_t points = 0, knobs = 0;
+  double seconds, all_s;
+  for (size_t i = 0; i < study->ladder_count; i++) {
+    points += i == 0 || study->ladder[i].base != study->ladder[i - 1].base;
+    knobs += points == 1; /* every point has the same */
+  }
+  const int64_t runs = count_missing(rounds, rule->first_seeds, &seconds),
+                all = count_missing(rounds, rule->most_seeds, &all_s);
   rounds->told |= !isnan(seconds);
-  if (!rounds->told || rounds->quiet || runs == 0)
+  if (!rounds->told || rounds->quiet || all == 0)
     return;
-  char time[32], most[64] = "";
+  char time[32], all_time[32], most[64] = "";
   progress_duration(seconds, time, sizeof time);
-  if (isfinite(study->rule.seconds))
-    snprintf(most, sizeof most, "; it ends after %.4g s (--seconds)", study->rule.seconds);
+  progress_duration(all_s, all_time, sizeof all_time);
+  if (isfinite(rule->seconds))
+    snprintf(most, sizeof most, "; it ends after %.4g s (--seconds)", rule->seconds);
   fprintf(stderr, "clast: %zu %s, %zu %s: the first %lld seeds of all levels take %lld more runs, about %s%s\n", points,
           points == 1 ? "point" : "points", knobs,
-          points == 1 ? (knobs == 1 ? "knob" : "knobs") : (knobs == 1 ? "knob each" : "knobs each"), (long long)seeds,
-          (long long)runs, time, most);
+          points == 1 ? (knobs == 1 ? "knob" : "knobs") : (knobs == 1 ? "knob each" : "knobs each"),
+          (long long)rule->first_seeds, (long long)runs, time, most);
+  if (!isnan(rule->within) && all > runs)
+    fprintf(stderr, "clast: then more seeds until every bias is narrow (--within): at most %lld runs, about %s\n",
+            (long long)all, all_time);
 }
 
 static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,

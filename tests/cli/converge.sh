@@ -469,6 +469,11 @@ same "$(cut -d, -f1 out | sort -u | tr '\n' ' ')" "0.01 0.03 threshold_strain " 
 expect 0 "$clast" converge each.yaml --set threshold.strain='3 %' --knob time_step --seeds 3 --within off --store one.db
 same "$(grep -c 'quantity largest_fraction' out)" 1 "points that differ"
 says "1 point, 1 knob: the first 3 seeds of all levels take"
+! grep -q "then more seeds" err || fail "more than one round is told"
+# A study with rounds tells the most that all of them take: all levels with --max-seeds.
+expect 0 "$clast" converge each.yaml --set threshold.strain='3 %' --knob time_step=2us,1us,0.5us --seeds 4 --max-seeds 8 --store most.db
+says "seeds of all levels take 11 more runs, about"
+says "then more seeds until every bias is narrow (--within): at most 23 runs, about"
 prints "from its limit, equal seeds compared"
 { cat each.yaml && echo 'accuracy: {within: 0.9}'; } >wide.yaml
 expect 0 "$clast" plan wide.yaml --store one.db
@@ -510,4 +515,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 126
+done_after 127

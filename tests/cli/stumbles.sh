@@ -80,6 +80,12 @@ head -1 out | grep -q 'strain.*angle.*point' || fail "scatter hides the varied i
 expect 64 "$clast" stats few.db -Q M_2/M
 says "did you mean 'second_fraction'?"
 
+# So does every word of the measurements that the help of `fit` shows.
+"$clast" fit --help >out
+words=$(sed -n '/^  name:/,/^$/p' out | grep -oE '[a-z_]+:|count_above' | tr -d : | sort -u)
+[ "$(echo "$words" | wc -l)" -ge 12 ] || fail "words of the measurements: $words"
+for word in $words share_above specimens; do "$clast" explain "$word" >out 2>err || fail "explain $word"; done
+ok "words of measurements"
 # Times of a plan without a trial are those of the campaign's own runs, not those of others in the store.
 sed 's/: few/: more/; s/\[2 deg, 6 deg\]/[3 deg]/' few.yaml >more.yaml
 expect 0 "$clast" plan more.yaml --no-trial
@@ -93,4 +99,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 24
+done_after 25

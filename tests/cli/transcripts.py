@@ -17,7 +17,7 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+(?:e[-+]?\d+)?|e[-+]?\d+)(?!\w)"
 VOLATILE = [
     (re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d(\.\d+)?)?Z?"), "TIME"),
     (re.compile(r"in [\d.]+ (?:ms|s|min) \([\d.]+ (?:ms|s|min) of processor time"), "in TIME (TIME of processor time"),
-    (re.compile(r"more runs, about\s+[\d.]+ (?:ms|s|min)"), "more runs, about TIME"),
+    (re.compile(r"runs, about\s+[\d.]+ (?:ms|s|min)(?: \d+ s)?"), "runs, about TIME"),
     (re.compile(r"^(\s*\"(?:cpu_time|wall_time|cpu_s\w*|seconds|.*_cpu_s)\": )[-\d.e+]+", re.M), r"\1TIME"),
 ]
 
