@@ -39,6 +39,7 @@ struct finding {
   struct accuracy *accuracy;
   struct store *store;
   const struct scene *scene; /* the one that was studied */
+  int64_t point;             /* its point in the store */
   const struct field *row;   /* of the quantity; NULL: an exponent */
   char results[ASK_DOUBTS_RESULTS];
   double beyond; /* sum over knobs without a limit: what a law of the least order leaves beyond the finest level, by the
@@ -412,6 +413,7 @@ static status read_study(struct finding *finding, struct store *store, const str
   TRY(ask_doubts_results(store, quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
   finding->row = quantity.row;
+  finding->point = point;
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
@@ -423,22 +425,92 @@ static status read_study(struct finding *finding, struct store *store, const str
   return STATUS_OK;
 }
 
+/* Reads the study of the first point that has one, if that of the campaign's scene is missing, and names its point. */
 static status read_points(struct finding *finding, struct store *store, struct error *error) {
   const struct campaign *campaign = finding->campaign;
   struct accuracy *accuracy = finding->accuracy;
   CAMPAIGN_WALK walk = {0};
   TRY(campaign_walk_begin(&walk, campaign, error));
   if (finding->studied && design_points(walk.design) > 1)
-    text_append(accuracy->studied, sizeof accuracy->studied, "the scene with its own values of what varies");
-  for (int i = 0; !finding->studied && i < LOOKED_AT && campaign_walk_next(&walk); i++) {
+    snprintf(accuracy->studied, sizeof accuracy->studied, "the scene with its own values of what varies");
+  bool named = design_points(walk.design) == 1;
+  for (int i = 0; !(finding->studied && named) && i < LOOKED_AT && campaign_walk_next(&walk); i++) {
     struct error ignored;
     char inputs[256];
+    int64_t point = 0;
     SCENE scene = campaign_walk_scene(&walk, &ignored);
-    if (scene)
+    if (scene && !finding->studied)
       TRY(read_study(finding, store, scene, error));
-    if (scene && finding->studied && design_points(walk.design) > 1)
-      text_append(accuracy->studied, sizeof accuracy->studied, "point %d, %s", i + 1,
-                  design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, inputs, sizeof inputs));
+    if (scene && finding->studied)
+      TRY(store_point_find(store, scene, &point, error));
+    if (!point || point != finding->point || named)
+      continue;
+    named = true;
+    snprintf(accuracy->studied, sizeof accuracy->studied, "point %d, %s", i + 1,
+             design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, inputs, sizeof inputs));
+  }
+  return STATUS_OK;
+}
+
+/* The unit of the accurate quantity, with a space before it; "" for plain numbers. */
+static const char *width_unit(const struct campaign *campaign, char text[UNIT_TEXT]) {
+  struct error ignored;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(campaign->scene->kind, campaign->accuracy_quantity, &of_outcome,
+                                              &ignored);
+  const char *unit = row ? field_shown_unit(row) : "";
+  snprintf(text, UNIT_TEXT, "%s%s", *unit ? " " : "", unit);
+  return text;
+}
+
+/* The error of the chosen setting at another point against what is allowed there; 0: that point has no study of it. */
+static status need_at(const struct finding *finding, struct store *store, const struct scene *scene,
+                      struct convergence_row *row, double *need, struct error *error) {
+  const struct campaign *campaign = finding->campaign;
+  const struct accuracy_option *chosen = &finding->accuracy->options[finding->accuracy->chosen];
+  struct study_quantity quantity;
+  int64_t point = 0;
+  *need = 0;
+  TRY(study_quantity_find(scene->kind, campaign->accuracy_quantity, &quantity, error));
+  TRY(store_point_find(store, scene, &point, error));
+  if (!point || point == finding->point)
+    return STATUS_OK;
+  ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
+  for (struct convergence_row level; ask_convergence_next(&levels, &level);)
+    if (level.n > 0 && isfinite(level.error) &&
+        (chosen->own ? level.base
+                     : strcmp(level.knob, chosen->knob) == 0 && strcmp(level.setting, chosen->setting) == 0)) {
+      const double within = campaign->accuracy_within * (campaign->accuracy_of_value ? fabs(level.mean) : 1);
+      *row = level;
+      *need = level.error / (isnan(within) ? chosen->error : within);
+    }
+  return answer_end(&levels);
+}
+
+/* Names the studied point at which the chosen setting is farthest from the accuracy, if one misses it. */
+static status name_widest(const struct finding *finding, struct store *store, struct error *error) {
+  const struct campaign *campaign = finding->campaign;
+  struct accuracy *accuracy = finding->accuracy;
+  double most = 1, need;
+  CAMPAIGN_WALK walk = {0};
+  if (accuracy->chosen == accuracy->count)
+    return STATUS_OK;
+  TRY(campaign_walk_begin(&walk, campaign, error));
+  for (int i = 0; i < LOOKED_AT && campaign_walk_next(&walk); i++) {
+    struct error ignored;
+    struct convergence_row row = {.error = 0};
+    char inputs[256], told[UNCERTAINTY_TEXT], unit[UNIT_TEXT];
+    SCENE scene = campaign_walk_scene(&walk, &ignored);
+    if (!scene)
+      continue;
+    TRY(need_at(finding, store, scene, &row, &need, error));
+    if (!(need > most))
+      continue;
+    most = need;
+    snprintf(accuracy->widest_point, sizeof accuracy->widest_point,
+             "point %d, %s, was studied, too, and its error is larger: %s%s with the mean %.3g", i + 1,
+             design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, inputs, sizeof inputs),
+             study_show_error(row.error, row.at_least, told), width_unit(campaign, unit), row.mean);
   }
   return STATUS_OK;
 }
@@ -464,7 +536,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
   if (accuracy->count == 0)
     return no_study(campaign, path, store_path, error);
   choose(accuracy);
-  return STATUS_OK;
+  return name_widest(&finding, store, error);
 }
 
 void accuracy_clear(struct accuracy *accuracy) {
@@ -526,17 +598,6 @@ static void append_study(const struct accuracy *accuracy, const struct campaign 
     if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
       text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit_of(campaign, knob));
   text_append(next, size, "`");
-}
-
-/* The unit of the accurate quantity, with a space before it; "" for plain numbers. */
-static const char *width_unit(const struct campaign *campaign, char text[UNIT_TEXT]) {
-  struct error ignored;
-  bool of_outcome;
-  const struct field *row = campaign_quantity(campaign->scene->kind, campaign->accuracy_quantity, &of_outcome,
-                                              &ignored);
-  const char *unit = row ? field_shown_unit(row) : "";
-  snprintf(text, UNIT_TEXT, "%s%s", *unit ? " " : "", unit);
-  return text;
 }
 
 /* More levels: with which, and what a run of the finest one takes. */
@@ -799,6 +860,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
                 "this is known of %s; the others have errors and means of their own, which may be wider: `clast "
                 "estimates` tells them after the run",
                 accuracy->studied);
+  if (*accuracy->widest_point)
+    words_print(out, before, "%s", accuracy->widest_point);
   if (!in_time)
     return;
   bool open[2];

@@ -50,8 +50,10 @@ struct accuracy {
   char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
   char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
   char studied[300];  /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
-  const char *path;   /* the campaign's file with --set and --store of the command (option_words()); borrowed */
-  size_t reference;   /* the option with the smallest error (for a share: of its mean); costs are relative to it */
+  char
+      widest_point[500]; /* a sentence on another studied point at which the chosen setting is farthest off; "": none */
+  const char *path;      /* the campaign's file with --set and --store of the command (option_words()); borrowed */
+  size_t reference;      /* the option with the smallest error (for a share: of its mean); costs are relative to it */
 };
 
 /* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its

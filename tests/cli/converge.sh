@@ -477,7 +477,26 @@ says "then more seeds until every bias is narrow (--within): at most 23 runs, ab
 prints "from its limit, equal seeds compared"
 { cat each.yaml && echo 'accuracy: {within: 0.9}'; } >wide.yaml
 expect 0 "$clast" plan wide.yaml --store one.db
+prints "this is known of point 2, strain 3 %; the others have errors"
+sed 's/3 %/4 %/' wide.yaml >other.yaml
+expect 0 "$clast" plan other.yaml --store one.db
 prints "this is known of the scene with its own values of what varies; the others have errors"
+# Of two studied points the first one chooses. The other is named where it misses, with its error and mean.
+{ sed "s/3 %/4 %/" each.yaml && echo "accuracy: {within: 5 %}"; } >both.yaml
+expect 0 "$clast" converge both.yaml --knob time_step=2us,1us --seeds 4 --within off --store two.db
+python - <<'PY'
+import sqlite3
+db = sqlite3.connect("two.db")
+db.execute("update convergence set open = 0, mean = 0.6, deviation = 1e-3, resolution = iif(base_point_id = "
+           "(select min(base_point_id) from convergence), 0.01, 0.2)")
+db.commit()
+PY
+expect 0 "$clast" plan both.yaml --store two.db --no-trial
+prints "this is known of point 1, strain 1 %; the others"
+prints "point 2, strain 4 %, was studied, too, and its error is larger: 0.2 with the mean 0.6"
+sed 's/5 %}/1 %}/' both.yaml >neither.yaml
+expect 65 "$clast" plan neither.yaml --store two.db --no-trial
+says "accuracy: by the study of point 1, strain 1 %, no setting gives"
 expect 0 "$clast" converge each.yaml --knob grains --seeds 2 --within off
 same "$(grep -c 'is left out: ' err) $(grep 'is left out: ' err | sort -u | wc -l)" "2 2" "remarks on levels, each once"
 # One sentence for a table: how many of its points do not converge, and the largest error of the others.
@@ -515,4 +534,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 127
+done_after 131
