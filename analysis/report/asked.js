@@ -90,9 +90,11 @@ export function showAsked(stores) {
   fill(body('asked'), ...stores.map(one));
 }
 
+const NAMED = 3; // campaigns in the title
+
 export function showTitle(stores) {
   const names = [...new Set(stores.flatMap((store) => ask(store, questions.campaigns).map((c) => c.name)))];
-  const title = names.length ? names.join(', ') : stores.map((store) => store.name).join(', ');
+  const title = names.length ? names.slice(0, NAMED).join(', ') + (names.length > NAMED ? ` and ${names.length - NAMED} more` : '') : stores.map((store) => store.name).join(', ');
   document.title = `${title} - clast`;
   document.getElementById('title').textContent = title;
   const {facts} = stores[0];

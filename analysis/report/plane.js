@@ -7,7 +7,7 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, exponents, has, newest} from './stores.js';
-import {inUnit, label, marked, number, plural, rangeOf, shell, shellFile, withInterval} from './words.js';
+import {inUnit, label, marked, number, plural, rangeOf, shell, fileOf, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 const MOST_LINES = 8; // of `clast plot`
@@ -264,10 +264,11 @@ function takeKeys(figure, rows) {
 
 function commandOf(at) {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
-  const from = shellFile(store().name);
-  if (!state.x) return `clast stats ${from} --quantity ${quantity}`;
+  const from = fileOf(store());
+  if (!state.x) return `clast stats ${from} --quantity ${quantity}${store().points.length === 1 ? ` --point ${store().points[0].point_id}` : ''}`;
   const sql = Object.entries(at).map(([column, value]) => `${column} IS ${typeof value === 'string' ? `'${value.replace(/'/g, "''")}'` : value}`).join(' AND ');
-  const where = sql && ` --where ${shell(sql)}`, has = (column) => (row) => row[column] !== NONE, is = (column) => (row) => typeof row[column] === 'number';
+  const {points} = store(), where = points.length === 1 ? ` --point ${points[0].point_id}` : sql && ` --where ${shell(sql)}`;
+  const has = (column) => (row) => row[column] !== NONE, is = (column) => (row) => typeof row[column] === 'number';
   if (state.y && plane.shown.filter(is(state.x)).some(is(state.y))) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}${where}`;
   const lines = new Set(plane.shown.filter(has(state.x)).map((row) => row[state.y]));
   if (lines.size > 0 && lines.size <= MOST_LINES) return `clast plot ${from} plot.png -x ${state.x}${state.y ? ` --by ${state.y}` : ''} -Q ${quantity}${where}`;

@@ -4,7 +4,7 @@ import {COLOURS, draw, scale} from './chart.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store, writeAddress} from './state.js';
 import {answer, has} from './stores.js';
-import {csv, number, plain, plural, shell, shellFile} from './words.js';
+import {csv, number, plain, plural, shell, fileOf} from './words.js';
 
 const MOST = 100000, SHOWN = 500;
 
@@ -58,7 +58,7 @@ export function askQuestion() {
     const told = `${plural(result.rows.length, 'row')}${result.more ? ' and more' : ''} in ${number(took / 1000, 2)} s${result.rows.length > SHOWN ? `; ${SHOWN} are listed` : ''}`;
     fill(parts.result, table(told, result.columns, shown.map((row) => row.map((value) => (value instanceof Uint8Array ? '(bytes)' : number(value, 6))))),
       element('div', {class: 'tools'}, element('button', {type: 'button', click: () => download('question.csv', 'text/csv', csv(result.columns, result.rows))}, 'CSV'),
-        command(`clast query ${shellFile(store().name)} ${shell(sql)} --csv`)),
+        command(`clast query ${fileOf(store())} ${shell(sql)} --csv`)),
       element('p', {class: 'note'}, 'The address of this page now holds the question: it is a link to it.'), chartTools(result));
   } catch (error) {
     fill(parts.result, element('p', {class: 'warning', role: 'alert'}, `SQL error: ${error.message}`));

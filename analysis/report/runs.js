@@ -3,7 +3,7 @@ import {body, command, element, fill, list, table} from './elements.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {ask, has} from './stores.js';
-import {inUnit, label, marked, number, plural, shellFile} from './words.js';
+import {inUnit, label, marked, number, plural, fileOf} from './words.js';
 
 const SHOWN = 200;
 let order = {column: null, down: false};
@@ -23,7 +23,7 @@ function pictureOf(row) {
 function showRun(id) {
   const from = store(), [row] = ask(from, questions.run, {run: id});
   const [picture] = has(from, 'picture') ? ask(from, questions.pictureOfRun, {run: id}) : [];
-  const file = shellFile(from.name);
+  const file = fileOf(from);
   const pairs = Object.entries(row).filter(([, value]) => value !== null && value !== '' && !(value instanceof Uint8Array))
     .map(([column, value]) => [label(state.stores, column), number(inUnit(state.stores, column, value), 7)]);
   fill(document.getElementById('run'), element('h3', {tabindex: -1, id: 'run-title'}, `Run ${id}`),

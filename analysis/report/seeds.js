@@ -7,7 +7,7 @@ import {nameOf, whereOf, withPartners} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {quantileInterval, summary} from './statistics.js';
 import {ask, has} from './stores.js';
-import {between, label, marked, number, plural, rangeOf, shellFile, withInterval} from './words.js';
+import {between, label, marked, number, plural, rangeOf, fileOf, withInterval} from './words.js';
 
 function valuesOf(from, point, quantity) {
   const rows = ask(from, questions.values(quantity), {point: point.point_id});
@@ -33,7 +33,7 @@ function histogram({name, values}, step) {
   return Array.from({length: high - low + 3}, (_, i) => low - 1 + i).map((bin) => ({name, low: bin * step, high: (bin + 1) * step, runs: counts.get(bin) ?? 0}));
 }
 
-const commandOf = (from, quantity, points) => `clast scatter ${shellFile(from.name)}${whereOf(points)} --quantity ${quantity}`;
+const commandOf = (from, quantity, points) => `clast scatter ${fileOf(from)}${whereOf(points)} --quantity ${quantity}`;
 
 export async function showSeeds() {
   const figure = document.querySelector('#seeds figure'), below = body('seeds'), quantity = state.quantity, from = store();

@@ -6,7 +6,7 @@ import {chosenPoints, state, store} from './state.js';
 import {cells, doubtSentence} from './plane.js';
 import {pool} from './statistics.js';
 import {ask, exponents, has} from './stores.js';
-import {inUnit, marked, number, plural, shellFile, unitOf, withError} from './words.js';
+import {inUnit, marked, number, plural, fileOf, unitOf, withError} from './words.js';
 
 export const inputsOf = (from, point) => from.axes.filter((axis) => point[axis.column_name] !== null).map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
@@ -82,7 +82,7 @@ export function whereOf(points) {
 
 function commandOf(drawn) {
   const of = drawn.filter((curve) => curve.from === drawn[0].from).flatMap((curve) => curve.points).map((point) => point.point_id);
-  return `clast spectrum ${shellFile(drawn[0].from.name)}${whereOf(of)}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
+  return `clast spectrum ${fileOf(drawn[0].from)}${whereOf(of)}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
 }
 
 export async function showSpectrum() {

@@ -93,7 +93,10 @@ export const inUnit = (stores, column, value) => (typeof value === 'number' ? va
 // A word of a shell's command line.
 export const shell = (text) => (/^[\w./:,=+-]+$/.test(text) ? text : `'${String(text).replaceAll("'", "'\\''")}'`);
 // The name of a store on a command line; a dash in front would be an option.
-export const shellFile = (text) => shell(text.startsWith('-') ? `./${text}` : text);
+const shellFile = (text) => shell(text.startsWith('-') ? `./${text}` : text);
+// The file of a store for other commands than `clast report` and `clast compare`, which also take STORE:POINT.
+export const fileOf = (store) => shellFile(store.facts.file ?? store.name);
+export const operandOf = (store) => shellFile(store.name);
 
 // A text that a spreadsheet would run as a formula gets an apostrophe, as in the tables of clast.
 export function csv(columns, rows) {

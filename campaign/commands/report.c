@@ -19,8 +19,8 @@ struct options {
 };
 
 struct report_choice {
-  size_t count; /* paths of stores, at most STORES */
-  char *const *stores;
+  size_t count;        /* paths of stores, at most STORES */
+  char *const *stores; /* operands: ask_choose_operand() */
   const char *output;
   struct ask_choice runs; /* of each store */
   int64_t refresh;        /* s, after which an open page loads itself again; 0: never */
@@ -34,7 +34,7 @@ struct making {
   bool full;                                        /* the next picture would be too much */
 };
 
-static status add_facts(struct making *making, const char *name, struct error *error) {
+static status add_facts(struct making *making, const char *name, const char *path, struct error *error) {
   char now[32], refresh[32], name_of_main[ASK_GROUP_NAME];
   const char *quantity = NULL;
   TRY(ask_quantity_main(making->store, name_of_main, &quantity, error));
@@ -44,6 +44,7 @@ static status add_facts(struct making *making, const char *name, struct error *e
   int dimensions;
   TRY(ask_pool_dimensions(making->store, &dimensions, error));
   const char *facts[][2] = {{"store", name},
+                            {"file", path},
                             {"mass_unit", ask_pool_mass_unit(dimensions)},
                             {"made_at", now},
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
@@ -131,8 +132,9 @@ static status add_picture(struct making *making, const struct answer *kept, stru
   return ask_page_picture(making->page, kept, png, size, error);
 }
 
-static status fill_page(struct making *making, const char *name, struct page_data *data, struct error *error) {
-  TRY(add_facts(making, name, error));
+static status fill_page(struct making *making, const char *name, const char *path, struct page_data *data,
+                        struct error *error) {
+  TRY(add_facts(making, name, path, error));
   ANSWER columns = ask_page_columns(making->page, error);
   while (answer_next(&columns))
     TRY(add_label(making, answer_text(&columns, 0), error));
@@ -151,8 +153,11 @@ static status add_store(const struct report_choice *choice, const char *name, st
                         struct error *error) {
   STORE store = NULL;
   int64_t excluded = 0;
-  TRY(store_open_reader(name, &store, error));
-  TRY(ask_choose(store, &choice->runs, error));
+  char path[LIMITS_PATH];
+  struct ask_choice runs = choice->runs;
+  ask_choose_operand(name, path, sizeof path, &runs);
+  TRY(store_open_reader(path, &store, error));
+  TRY(ask_choose(store, &runs, error));
   TRY(ask_choose_estimates(store, error));
   TRY(ask_run_excluded_count(store, &excluded, error));
   uncertainty_excluded(excluded, name);
@@ -160,7 +165,7 @@ static status add_store(const struct report_choice *choice, const char *name, st
   struct making making = {.choice = choice, .store = store};
   status code = ask_page_make(store, &making.page, error);
   if (code == STATUS_OK)
-    code = fill_page(&making, name, data, error);
+    code = fill_page(&making, name, path, data, error);
   ask_page_free(making.page);
   return code;
 }
@@ -183,8 +188,11 @@ static status make(const struct report_choice *choice, size_t *size, struct erro
 /* True while a campaign writes one of the stores. */
 static bool is_running(const struct report_choice *choice) {
   bool running = false;
-  for (size_t i = 0; i < choice->count; i++)
-    running = running || store_is_being_written(choice->stores[i]);
+  for (size_t i = 0; i < choice->count; i++) {
+    char path[LIMITS_PATH];
+    ask_choose_operand(choice->stores[i], path, sizeof path, &(struct ask_choice){0});
+    running = running || store_is_being_written(path);
+  }
   return running;
 }
 
@@ -216,6 +224,10 @@ static status run(const struct command_line *line, struct error *error) {
   size_t size = 0;
   if (line->count > STORES)
     return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", STORES);
+  const char *dot = options->output ? strrchr(options->output, '.') : ".html";
+  if (!dot || (strcmp(dot, ".html") != 0 && strcmp(dot, ".htm") != 0))
+    return status_fail(error, STATUS_USAGE, "%s: the page is HTML, which a browser can print: name it PAGE.html",
+                       options->output);
   name_page(line->arguments[0], name, sizeof name);
   struct report_choice choice = {.runs = line->choice,
                                  .count = line->count,

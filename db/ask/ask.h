@@ -28,6 +28,9 @@ struct ask_choice {
 /* For a reader. Points without a chosen run are no points. An empty choice: all. STATUS_USAGE: unknown point or
  * campaign; the condition is no valid SQL. */
 status ask_choose(struct store *store, const struct ask_choice *choice, struct error *error);
+/* An operand STORE, STORE:POINT or STORE:CAMPAIGN: the path of its store, and a narrower choice, whose campaign is
+ * borrowed from the operand. A file of the whole name is a STORE. */
+void ask_choose_operand(const char *operand, char *path, size_t size, struct ask_choice *choice);
 /* The choice in words: "campaign 2, m > 5"; "": all runs, or all of a point. Borrowed. */
 const char *ask_chosen(const struct store *store);
 /* Points that campaigns_alone left out. */

@@ -1,7 +1,9 @@
 /* Chooses the runs that all further questions to a store see. The tables that questions read get temporary views of the
  * same names, which SQLite finds first; so no question knows of the choice. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
@@ -158,6 +160,20 @@ status ask_choose(struct store *store, const struct ask_choice *choice, struct e
   if (!store->writer)
     sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
   return code;
+}
+
+void ask_choose_operand(const char *operand, char *path, size_t size, struct ask_choice *choice) {
+  const char *colon = strrchr(operand, ':');
+  snprintf(path, size, "%s", operand);
+  if (!colon || access(operand, F_OK) == 0)
+    return;
+  snprintf(path, size, "%.*s", (int)(colon - operand), operand);
+  char *end = NULL;
+  const int64_t point = strtoll(colon + 1, &end, 10);
+  if (*end || point < 1)
+    choice->campaign = colon + 1;
+  else
+    choice->point = point;
 }
 
 const char *ask_chosen(const struct store *store) {

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "engine/grow.h"
 #include "engine/outcome.h"
@@ -126,20 +125,9 @@ static status read_values(struct store *store, const char *quantity, struct side
   return exponent ? read_exponents(store, method, window, side, error) : STATUS_OK;
 }
 
-/* STORE:POINT and STORE:CAMPAIGN choose more narrowly than `choice`. */
 static status read_side(struct ask_pairs *pairs, const char *operand, struct ask_choice choice, struct side *side,
                         struct error *error) {
-  const char *colon = strrchr(operand, ':');
-  snprintf(side->path, sizeof side->path, "%s", operand);
-  if (colon && access(operand, F_OK) != 0) {
-    snprintf(side->path, sizeof side->path, "%.*s", (int)(colon - operand), operand);
-    char *end = NULL;
-    const int64_t point = strtoll(colon + 1, &end, 10);
-    if (*end || point < 1)
-      choice.campaign = colon + 1;
-    else
-      choice.point = point;
-  }
+  ask_choose_operand(operand, side->path, sizeof side->path, &choice);
   side->one_point = choice.point > 0;
   side->choice = choice;
   STORE store = NULL;

@@ -273,6 +273,7 @@ def loads_again(browser):
         db.execute("INSERT INTO doubt VALUES (3, 'sph', 'box', 3)")
         db.execute("INSERT INTO doubt_mark VALUES ('sph', 'box', 'largest_fraction', 'box', 1)")
         db.execute("UPDATE runs SET largest_fraction = NULL")
+        db.execute("INSERT INTO campaign SELECT campaign_id + n, 'more ' || n, document, added_at FROM campaign, (SELECT 1 AS n UNION SELECT 2 UNION SELECT 3 UNION SELECT 4)")
         db.commit()
         changed = base64.b64encode(gzip.compress(db.serialize())).decode()
     with open("again.html", "w", encoding="utf-8") as file:
@@ -286,6 +287,8 @@ def loads_again(browser):
     browser.until("document.querySelector('#plane-chart svg')?.textContent.split('◆').length === 2"
                   " && document.querySelector('#points').textContent.includes('two: 20 and 60')")
     done("two modes of a result that is no main one are marked")
+    browser.until("document.querySelector('h1')?.textContent.endsWith(', more 1, more 2 and 2 more')")
+    done("a title names three campaigns")
     browser.open("again.html", "#points=3")
     browser.until("/has a value of this quantity. !: in doubt, 3 of 3 runs. box .withholds the value.: /.test(document.querySelector('#seeds')?.textContent)")
     done("values that are withheld are told with their reason")
@@ -403,6 +406,15 @@ def side_by_side(browser):
     browser.until("document.querySelector('#compare .scroll').scrollWidth <= document.querySelector('#compare .scroll').clientWidth")
     assert browser.js("document.querySelector('#compare td:last-child').dataset.heading") == "difference"
     browser.size(1280, 900)
+    browser.open("pair.html")
+    wait_shown(browser, 1)
+    told = text(browser, "#compare .body")
+    assert "angle 2 deg, strain 2 %; angle 6 deg, strain 5 %" in told and " of two points;" in told and "small.db:4: no" not in told, told
+    assert browser.js("document.querySelectorAll('#points tbody tr').length") == 1
+    commands = browser.js("[...document.querySelectorAll('figure code, #compare code')].map((c) => c.textContent)")
+    assert len(commands) == 4 and "clast compare small.db:1 small.db:4 --quantity largest_fraction" in commands, commands
+    for command in commands:
+        subprocess.run([clast, *shlex.split(command)[1:]], check=True, capture_output=True)
     browser.open("apart.html")
     wait_shown(browser, 1)
     told = text(browser, "#compare .body")

@@ -13,6 +13,14 @@ grep -qE '(src|href)="?(https?:)?//' small.html && fail "the page names a file o
 grep -q "default-src 'none'" small.html || fail "the page has no security policy"
 ok "a small page of its own"
 
+# A page is HTML; a point or a campaign of a store is named as for `clast compare`.
+expect 64 "$clast" report small.db -o page.pdf
+says "page.pdf: the page is HTML"
+[ ! -e page.pdf ] || fail "HTML in a file of another ending"
+expect 0 "$clast" report small.db:1 small.db:4 -o pair.html
+expect 64 "$clast" report small.db:9
+expect 66 "$clast" report none.db:1
+
 expect 66 "$clast" report none.db
 expect 74 "$clast" report small.db -o small.db
 says "it is a store"
@@ -260,7 +268,7 @@ JS
   expect 0 "$clast" report scenes.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 51
+  done_after 55
 else
-  done_after 37
+  done_after 41
 fi
