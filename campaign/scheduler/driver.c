@@ -137,7 +137,7 @@ static void count_run(struct driver *driver, struct point *point, int64_t r, con
   struct driver_summary *summary = &driver->summary;
   const bool usable = outcome_is_usable(run->state) && !run->excluded;
   const enum condition_mark mark = condition_mark(point->scene->kind->conditions, run->warnings, driver->row->path);
-  const double value = usable && mark != CONDITION_WITHHELD ? run->value : NOTHING;
+  const double value = point_value(point, driver->row, run);
   point_finish_replicate(point, r, POINT_DONE, value);
   point->replicates[r].surplus = run->surplus;
   point->replicates[r].fields = fields || run->state == OUTCOME_INVALID;

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "campaign/converge/ladder.h"
+#include "campaign/scheduler/point.h"
 #include "campaign/terminal/words.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
@@ -172,10 +173,13 @@ struct looking {
   double work, work_most;
   struct scene *sample[SAMPLED]; /* points spread over the design; owned */
   size_t sampled;
-  struct scene *costliest;     /* the point with the most work; owned */
-  uint64_t asked, there;       /* runs looked up in the store */
-  uint64_t timed;              /* of those that are there, with their times: */
-  double wall_s, wall_s_most;  /* sum and longest */
+  struct scene *costliest;    /* the point with the most work; owned */
+  uint64_t asked, there;      /* runs looked up in the store */
+  uint64_t timed;             /* of those that are there, with their times: */
+  double wall_s, wall_s_most; /* sum and longest */
+  /* With `until`: runs that the rule needs by those in the store, and how many of these are there; points that ended.
+   */
+  uint64_t least, most, judged_there, ended;
   uint8_t seen[LOOKED_AT][16]; /* identities of the points' first runs */
   size_t seen_count;
 };
@@ -209,6 +213,36 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
     looking->wall_s += seconds;
     looking->wall_s_most = fmax(looking->wall_s_most, seconds);
   }
+}
+
+/* Applies the stopping rule to the point's runs in the store. */
+static status judge(const struct campaign *campaign, const struct scene *scene, struct store *store,
+                    struct looking *looking, struct error *error) {
+  const struct engine_kind *kind = scene->kind;
+  struct point *point = point_create(campaign, scene_copy(scene));
+  int64_t id = 0;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(kind, campaign->until_quantity, &of_outcome, error);
+  status code = !row ? STATUS_CONTENT : store ? store_point_find(store, scene, &id, error) : STATUS_OK;
+  if (code == STATUS_OK && id) {
+    ANSWER stored = ask_run_of_point(store, id, kind, row, of_outcome, error);
+    for (struct ask_run_of_point run; ask_run_of_point_next(&stored, &run);) {
+      const int64_t r = scheduler_replicate(campaign, scene, &run);
+      if (r >= 0 && r < campaign_replicates_most(campaign) && point_reserve(point, r))
+        point_finish_replicate(point, r, POINT_DONE, point_value(point, row, &run));
+    }
+    code = answer_end(&stored);
+  }
+  point_judge(point);
+  const int64_t rule = campaign_replicates_least(campaign),
+                least = point->decided || point->prefix > rule ? point->prefix : rule;
+  for (int64_t r = 0; r < least && r < point->capacity; r++)
+    looking->judged_there += point->replicates[r].state == POINT_DONE;
+  looking->ended += point->decided;
+  looking->least += (uint64_t)least;
+  looking->most += (uint64_t)(point->decided ? least : campaign_replicates_most(campaign));
+  point_free(point);
+  return code;
 }
 
 /* Counts a point. Keeps a copy of it as a sample, and the point itself if it is the most expensive one. Takes ownership
@@ -250,6 +284,8 @@ static status look(const struct campaign *campaign, struct store *store, struct 
       continue;
     }
     ask(campaign, scene, store, looking);
+    if (campaign->per_point == 0 && stride == 1)
+      TRY(judge(campaign, scene, store, looking, error));
     take_point(plan, looking, scene, looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED));
   }
   return looking->costliest
@@ -354,6 +390,12 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
   plan->runs_least = plan->points * (uint64_t)campaign_replicates_least(campaign);
   plan->runs_most = plan->points * (uint64_t)campaign_replicates_most(campaign);
   plan->runs_there = (uint64_t)llround(share * (double)plan->runs_least);
+  if (looking->least && plan->points_looked_at == plan->points) {
+    plan->runs_least = looking->least;
+    plan->runs_most = looking->most;
+    plan->runs_there = looking->judged_there;
+    plan->points_ended = looking->ended;
+  }
   if (plan->trial_made) {
     plan->run_s_mean = looking->work_most > 0 ? plan->run_s_most * looking->work / looked / looking->work_most
                                               : plan->run_s_most;
@@ -478,15 +520,21 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
 }
 
 static void print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
-  char a[64], b[64], until[2 * FIELD_TEXT_SIZE] = "";
+  char a[64], b[64], ended[64] = "", until[2 * FIELD_TEXT_SIZE] = "";
   print_design(campaign, plan, out);
   campaign_warn(campaign, "warning   ", out);
 
-  if (plan->runs_most != plan->runs_least)
-    snprintf(until, sizeof until, " to %llu (%s to ±%g%s; at least %lld seeds a point, as few can be alike by chance)",
+  if (plan->points_ended)
+    snprintf(ended, sizeof ended, "; %llu of %llu points have ended", (unsigned long long)plan->points_ended,
+             (unsigned long long)plan->points);
+  if (plan->points_ended == plan->points)
+    snprintf(until, sizeof until, " (every point has met seeds.until or has seeds.max runs)");
+  else if (plan->runs_most != plan->runs_least)
+    snprintf(until, sizeof until,
+             " to %llu (%s to ±%g%s; at least %lld seeds a point, as few can be alike by chance%s)",
              (unsigned long long)plan->runs_most, campaign->until_quantity,
              campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
-             campaign->until_of_value ? " % of its mean" : "", (long long)campaign_replicates_least(campaign));
+             campaign->until_of_value ? " % of its mean" : "", (long long)campaign_replicates_least(campaign), ended);
   snprintf(a, sizeof a, plan->store_exists ? "%llu of them in the store" : "no store yet",
            (unsigned long long)plan->runs_there);
   words_print(out, "runs      ", "%llu%s, %s", (unsigned long long)plan->runs_least, until, a);

@@ -30,6 +30,12 @@ struct point *point_create(const struct campaign *campaign, struct scene *scene)
   return point;
 }
 
+double point_value(const struct point *point, const struct field *row, const struct ask_run_of_point *run) {
+  const bool usable = outcome_is_usable(run->state) && !run->excluded;
+  const enum condition_mark mark = condition_mark(point->scene->kind->conditions, run->warnings, row->path);
+  return usable && mark != CONDITION_WITHHELD ? run->value : (double)NAN;
+}
+
 void point_free(struct point *point) {
   if (!point)
     return;

@@ -4,6 +4,7 @@
 #define CLAST_CAMPAIGN_SCHEDULER_POINT_H
 
 #include "campaign/document/campaign.h"
+#include "db/ask/ask.h"
 
 /* ---- cost ----
  *
@@ -71,6 +72,8 @@ struct point {
   struct point_cost cost;
 };
 
+/* The value of a stored run for the rule. NaN: failed, excluded, or withheld. */
+double point_value(const struct point *point, const struct field *row, const struct ask_run_of_point *run);
 /* Takes ownership of the scene. Never NULL. */
 struct point *point_create(const struct campaign *campaign, struct scene *scene);
 void point_free(struct point *point); /* NULL is fine */

@@ -235,6 +235,7 @@ struct plan {
   uint64_t points, points_looked_at; /* costs are averaged over the sampled points (at most 4096) */
   uint64_t runs_least, runs_most;    /* differ with `until` */
   uint64_t runs_there;               /* of the sampled points, already in the store */
+  uint64_t points_ended;             /* with `until`, by the runs in the store: met the rule, or ended at seeds.max */
   const char *store;                 /* path; borrowed from the campaign or the options */
   char costliest[512];               /* the point of `model`, as people read it; "": there is one point */
   bool store_exists;

@@ -282,6 +282,14 @@ assert equal["n"] == "50" and float(equal["largest_fraction_low95"]) < 0.95, equ
 assert float(other["largest_fraction_hw95"]) <= 0.05 * float(other["largest_fraction_mean"]), other
 PY
 ok "the table of a point that met the rule"
+# A plan sees which points have met the rule by the runs in the store.
+runs=$(number near.db "select sum(runs) from point_total")
+expect 0 "$clast" plan near.yaml --no-trial
+prints "runs      $runs (every point has met seeds.until or has seeds.max runs), $runs of them in the store"
+sed 's/70 1/120 1/' near.yaml >far.yaml
+expect 0 "$clast" plan far.yaml --no-trial --store near.db
+prints "runs      100 to 170 (largest_fraction to ±5 % of its mean; at least 50 seeds a point, as few can"
+prints "; 1 of 2 points have ended), 50 of them in the store"
 sed -i 's/half_width: 0.0001/half_width: 50 %/' wide.yaml
 expect 0 "$clast" run wide.yaml --quiet
 grep -q "seeds.max" err && fail "a rule that is met is warned of"
@@ -308,4 +316,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 89
+done_after 91
