@@ -27,6 +27,11 @@ const fixed = (value, places) => (places === 0 && Math.abs(value % 1) === 0.5 ? 
 
 export function withError(mean, half) {
   if (!(half > 0) || typeof mean !== 'number') return number(mean);
+  const size = Math.max(Math.abs(mean), half);
+  if (size < 1e-3 || (size >= 1e6 && lastDecade(half) >= 3)) { // (3.3 ± 0.2)×10⁷
+    const power = Math.floor(Math.log10(size));
+    return `(${withError(mean / 10 ** power, half / 10 ** power)})×10${raised(String(power))}`;
+  }
   const decade = lastDecade(half), last = mean !== 0 && Math.abs(mean) < 0.5 * 10 ** decade ? decade - 1 : decade;
   if (Math.abs(last) > 15 || Math.abs(mean) >= 1e15) return `${number(mean)} ± ${number(half, 2)}`;
   const shown = (value) => (last > 0 ? String(10 ** last * Math.round(value / 10 ** last)) : fixed(value, -last));
@@ -45,7 +50,9 @@ function cutInterval(mean, low, high) {
   const decade = lastDecade(Math.max(high - mean, mean - low)), last = mean < 2 * 10 ** decade ? decade - 1 : decade;
   const size = Math.max(Math.abs(low), Math.abs(high)), step = 10 ** last;
   if (Math.abs(last) > 15 || size < 1e-3 || size >= 1e15) return `${number(mean, 2)} (${number(low, 2)} to ${number(high, 2)})`;
-  const shown = (value) => (last > 0 ? String(step * Math.round(value / step)) : fixed(value, -last));
+  const large = size >= 1e6 && last >= 3; // 3×10⁷ (0 to 5×10⁷)
+  const shown = (value) => (large && value > 0 ? number(value, Math.max(1, Math.floor(Math.log10(value)) - last + 1))
+    : last > 0 ? String(step * Math.round(value / step)) : fixed(value, -last));
   const end = (value) => (value === 0 || value === 1 ? String(value) : shown(value));
   return `${shown(mean)} (${end(low)} to ${end(high)})`;
 }

@@ -490,11 +490,14 @@ static void print_design(const struct campaign *campaign, const struct plan *pla
   fprintf(out, "campaign  %s, scene %s\n", campaign->name, campaign->scene_reference);
   fprintf(out, "design    %s, %llu point%s", designs[campaign->design.kind], (unsigned long long)plan->points,
           plan->points == 1 ? "" : "s");
-  for (size_t i = 0; i < campaign->axis_count; i++) {
-    fprintf(out, "\n%-8s  %s: ", i ? "" : "over", campaign->axes[i].row->path);
-    design_axis_describe(campaign->axes, i, out);
-  }
   fputc('\n', out);
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    OWNED char *values = NULL;
+    FILE *text = text_open(&values);
+    design_axis_describe(campaign->axes, i, text);
+    text_close_small(text, &values);
+    words_print(out, i ? "          " : "over      ", "%s: %s", campaign->axes[i].row->path, values);
+  }
 }
 
 static void print_times(const struct plan *plan, int slots, FILE *out) {

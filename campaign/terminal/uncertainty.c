@@ -57,6 +57,12 @@ static void write_end(double last, double end, char text[32]) {
   write_to(end == 0 || end == 1 ? 0 : last, end, text);
 }
 
+/* The same with a power of ten: "3e+07" where the last digit is the leading one. */
+static void write_power(double last, double number, char text[32]) {
+  const double leading = number > 0 ? floor(log10(number)) : last;
+  snprintf(text, 32, "%.*g", leading > last ? (int)(leading - last) + 1 : 1, number);
+}
+
 void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]) {
   const double low = fmax(value - half_width, range->least), high = fmin(value + half_width, range->most);
   const bool cut = value - half_width < range->least || value + half_width > range->most;
@@ -73,9 +79,10 @@ void uncertainty_cell(double value, double half_width, const struct sample_range
     return;
   }
   char parts[3][32];
-  write_to(last, value, parts[0]);
-  write_end(last, low, parts[1]);
-  write_end(last, high, parts[2]);
+  const bool large = size >= LARGE && last >= THOUSANDS; /* 3e+07 (0 to 5e+07) */
+  (large ? write_power : write_to)(last, value, parts[0]);
+  (large ? write_power : write_end)(last, low, parts[1]);
+  (large ? write_power : write_end)(last, high, parts[2]);
   snprintf(text, UNCERTAINTY_TEXT, "%s (%s to %s)", parts[0], parts[1], parts[2]);
 }
 

@@ -80,6 +80,11 @@ head -1 out | grep -q 'strain.*angle.*point' || fail "scatter hides the varied i
 expect 64 "$clast" stats few.db -Q M_2/M
 says "did you mean 'second_fraction'?"
 
+# The values of an axis stay within 100 columns.
+printf 'name: long\nscene: disc-explosion\nvary:\n  threshold.strain: [%s 1 %%]\n' "$(seq -f '%.7f %%,' 1.1234567 0.1 2.5 | tr '\n' ' ')" >long.yaml
+expect 0 "$clast" plan long.yaml --no-trial
+prints "over      threshold.strain: 1.12"
+[ "$(wc -L <out)" -le 100 ] || fail "lines of a plan: $(cat out)"
 # So does every word of the measurements that the help of `fit` shows.
 "$clast" fit --help >out
 words=$(sed -n '/^  name:/,/^$/p' out | grep -oE '[a-z_]+:|count_above' | tr -d : | sort -u)
@@ -99,4 +104,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 25
+done_after 26
