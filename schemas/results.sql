@@ -1165,7 +1165,7 @@ INSERT INTO column_doc VALUES ('resolution', 'quantity', NULL, 'the result, as a
 
 INSERT INTO column_doc VALUES ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied', 0);
 
-INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known; no-difference: all runs of the settings are equal; at-least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
+INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known: half_width is a bound, which can be as large as the result; no-difference: all runs of the settings are equal; at-least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
 
 INSERT INTO column_doc VALUES ('result_dem', 'angular_momentum_error', '1', 'Change of the angular momentum about the origin, over the larger of its value at the start and the sum of the momenta times half of the body''s size. Off for bodies between moving sides.', 1);
 

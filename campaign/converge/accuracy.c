@@ -855,6 +855,9 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
               "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
               campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more, chosen,
               option->seeds, cost);
+  if (option->deviation >= 0 && !(option->deviation > SAMPLE_ROUNDING * fabs(option->mean)))
+    words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: more of them tell no more",
+                option->n);
   if (*accuracy->studied)
     words_print(out, before,
                 "this is known of %s; the others have errors and means of their own, which may be wider: `clast "

@@ -213,6 +213,19 @@ static bool has_runs(const struct study_found *found) {
   return n > 0;
 }
 
+/* Are the runs of every level equal for all seeds, as in a scene without random numbers? */
+static bool seeds_are_equal(size_t count, const struct study_found *found) {
+  bool any = false;
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++) {
+      const struct convergence_row *row = &found[i].rows[l];
+      any |= row->n > 1;
+      if (row->n > 1 && row->deviation > SAMPLE_ROUNDING * fabs(row->mean))
+        return false;
+    }
+  return any;
+}
+
 /* "M_1/M = 0.218 +- 0.026 (seeds, 95 %). Error of the resolution: >= 0.09 (grains >= 0.05, time_step 0.04)." */
 static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
                            const struct study_found *found, FILE *out) {
@@ -266,7 +279,12 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
       fprintf(out, "%s%s", before, found[i].rows[0].knob);
       before = ", ";
     }
-  fprintf(out, "%s\n", *before == ',' ? "." : "");
+  fputs(*before == ',' ? "." : "", out);
+  if (seeds_are_equal(count, found))
+    fputs(" All seeds of a level are equal: more of them tell no more.", out);
+  if (told->error >= fabs(told->mean) && fabs(told->mean) > 0)
+    fputs(" Such an error is as large as the value: finer levels are needed, or more seeds.", out);
+  fputc('\n', out);
 }
 
 /* The limit with the scatter of the seeds in its interval. The distance of the scene's own level is known far better:
@@ -291,10 +309,11 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
     print_seen(limit, found, out);
   else if (limit->verdict == LIMIT_NOT_SEEN) {
     print_change(knob, found, out);
-    fprintf(out,
-            ": the three finest levels do not follow limit + a step^p with p from 0.5 to 2 (if they did, chance would "
-            "put them this far off in %.2g %% of studies); ",
-            100 * limit->fit);
+    fputs(": the three finest levels do not follow limit + a step^p with p from 0.5 to 2", out);
+    if (!seeds_are_equal(1, found))
+      fprintf(out, " (if they did, chance would put them this far off in %s%.2g %% of studies)",
+              limit->fit < 1e-5 ? "less than " : "", 100 * fmax(limit->fit, 1e-5));
+    fputs("; ", out);
   } else if (limit->verdict == LIMIT_CONSTANT)
     fprintf(out, "no difference seen, all runs are equal; ");
   else if (!isnan(found->rows[0].step))

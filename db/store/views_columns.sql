@@ -26,7 +26,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),
   ('resolution', 'quantity', NULL, 'the result, as a column of the view runs; beta or beta_METHOD_WINDOW: an exponent of all runs of a point'),
   ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied'),
-  ('resolution', 'verdict', NULL, 'known; no-difference: all runs of the settings are equal; at-least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge');
+  ('resolution', 'verdict', NULL, 'known: half_width is a bound, which can be as large as the result; no-difference: all runs of the settings are equal; at-least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge');
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning
   FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '),
