@@ -31,6 +31,10 @@ static status check_range(const struct field *row, double number, const struct f
   char range[160], came[FIELD_TEXT_SIZE];
   field_describe_range(row, range, sizeof range);
   field_print(row, value, came, sizeof came);
+  if (row->kind == FIELD_REAL && row->unit && strcmp(row->unit, "1") == 0 && row->maximum <= 1 &&
+      number > row->maximum && number <= 100 * row->maximum && number >= 100 * row->minimum)
+    return status_fail(error, STATUS_CONTENT, "%s: expected %s%s, got %s; '%.6g %%' is %.6g", row->path, range,
+                       row->flags & FIELD_MAY_BE_OFF ? ", or off" : "", came, number, number / 100);
   return status_fail(error, STATUS_CONTENT, "%s: expected %s%s, got %s", row->path, range,
                      row->flags & FIELD_MAY_BE_OFF ? ", or off" : "",
                      isfinite(number) ? came : "a number that is not finite");

@@ -456,8 +456,13 @@ static status read_mass(const struct reading *r, const char *text, const char *u
     *mass = 0;
     return STATUS_OK;
   }
-  if (code || !(place > 0))
-    return refuse(r, error, r->by_size ? "expected a size above 0, not" : "expected a mass above 0, not", quantity);
+  if (code || !(place > 0)) {
+    char why[sizeof error->message] = "";
+    if (code && error)
+      snprintf(why, sizeof why, ": %.300s", error->message);
+    return status_fail(error, STATUS_CONTENT, "%s:%lld: expected a %s above 0, not '%.80s'%s", r->path,
+                       (long long)r->csv.line, r->by_size ? "size" : "mass", quantity, why);
+  }
   *mass = r->by_size ? spectrum_size_mass(&r->size, place) : place;
   if (!(*mass > 0) || !isfinite(*mass)) /* the cube of a size can exceed the range of a double */
     return refuse(r, error, "no fragment has the mass of", quantity);

@@ -37,13 +37,16 @@ static status run(const struct command_line *line, struct error *error) {
   ASK_PAIRS pairs = NULL;
   TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &line->choice, &pairs, error));
   TABLE table = table_new(line->format, stdout);
-  table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
-                                             "difference", "hw95", NULL});
+  const bool people = table_for_people(line->format); /* a narrow head ends its lines at blanks */
+  table_columns(table, people ? (const char *const[]){"point a", "point b", "inputs", "n a", "n b", "pairs", "mean a",
+                                                      "mean b", "difference", "hw95", NULL}
+                              : (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a",
+                                                      "mean_b", "difference", "hw95", NULL});
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   bool equal = false;
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
-    equal = print(table, table_for_people(line->format), &row, &doubts) || equal;
+    equal = print(table, people, &row, &doubts) || equal;
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
   for (int side = 0; side < 2; side++) {
@@ -57,7 +60,7 @@ static status run(const struct command_line *line, struct error *error) {
   TRY(ask_pairs_apart(pairs, apart, sizeof apart, error));
   if (*apart)
     fprintf(stderr, "clast: a and b also differ in %s\n", apart);
-  if (table_for_people(line->format)) {
+  if (people) {
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
             "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "

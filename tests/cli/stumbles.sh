@@ -19,6 +19,20 @@ for word in alpha_0 alpha0; do
   prints "target.material.porosity.distention"
 done
 
+# A number of per cent without its sign; lines of a plan; heads of a table of two sides.
+expect 64 "$clast" simulate basalt-sphere --set target.material.porosity.fraction=20
+says "expected at least 0 and at most 0.99, or off, got 20; '20 %' is 0.2"
+expect 64 "$clast" simulate basalt-sphere --set target.material.porosity.fraction=200
+grep -q '%' err && fail "200 % are no share"
+tiny folded
+sed -i 's/threshold.angle: .*/threshold.angle: [1.01 deg, 2.01 deg, 3.01 deg, 4.01 deg, 5.01 deg, 6.01 deg, 7.01 deg, 8.01 deg, 9.01 deg, 10.01 deg]/' folded.yaml
+expect 0 "$clast" plan folded.yaml --no-trial
+[ "$(wc -L <out)" -le 100 ] && grep -q '^over      threshold.strain: 2 %, 5 %$' out || fail "lines of a plan"
+expect 0 "$clast" run folded.yaml --seeds 2 --quiet
+expect 0 "$clast" compare folded.db:1 folded.db:12
+grep -q 'point_\|n_' out && fail "heads that are cut"
+prints "a: strain 2 %"
+
 # A path of a table stays whole.
 expect 0 "$clast" converge --list
 prints "target.material.porosity.curve "
@@ -104,4 +118,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 26
+done_after 31

@@ -97,6 +97,8 @@ static void bad_files(void **state) {
       {"weight (g)\n1\n", ":1: no such column"},
       {"name,id\n1,2\n", ":1: the first line names the columns"},
       {"mass (mm)\n1\n", ":2: expected a mass above 0, not '1 mm'"},
+      {"mass (stone)\n3\n", ":2: expected a mass above 0, not '3 stone': unknown unit 'stone'; known are"},
+      {"# density: 1 g/cm^3\nsize (foot)\n3\n", ":3: expected a size above 0, not '3 foot': unknown unit"},
       {"mass (g)\n1\nx\n", ":3: expected a mass"},
       {"mass (g)\n-1\n", ":2: expected a mass"},
       {"mass (g)\nnan\n", ":2: expected a mass"},
