@@ -326,6 +326,23 @@ static bool report_set(document_node *set, const struct campaign *campaign, cons
   return false;
 }
 
+/* Does the message name an input that `vary` gives, if perhaps misspelt? With an error in `vary`, its values are not
+ * known. */
+static bool names_varied(document_node *vary, const char *message) {
+  char words[sizeof((struct error *)0)->message], *rest = words;
+  snprintf(words, sizeof words, "%s", message + strcspn(message, ":")); /* behind the input of `set` itself */
+  for (char *word; (word = strsep(&rest, " ,:;'()"));)
+    for (size_t i = 0; *word && vary && i < document_count(vary); i++) {
+      const char *key = NULL;
+      (void)document_item(vary, i, &key);
+      struct text_guess guess = text_guess(key ? key : "");
+      text_guess_offer(&guess, word);
+      if (key && (guess.nearest || strcmp(word, key) == 0 || text_ends_in_words(word, key, ".")))
+        return true;
+    }
+  return false;
+}
+
 /* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. A
  * point that cannot be run is reported with its line in the file, or at the key that made it. */
 static void check_points(document_node *root, struct campaign *campaign) {
@@ -400,6 +417,7 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   check_quantities(root, stored, campaign);
   if (plain && varied && good && (stored || check_rocks(file ? file : vary, campaign)))
     check_points(root, campaign);
-  else if (good && set && scene_check(campaign->scene, &error) != STATUS_OK) /* not only the errors of `vary` */
+  else if (good && set && scene_check(campaign->scene, &error) != STATUS_OK && /* not only the errors of `vary` */
+           (varied || !names_varied(vary, error.message)))
     (void)report_set(set, campaign, &error);
 }

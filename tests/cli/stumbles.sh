@@ -33,6 +33,16 @@ expect 0 "$clast" compare folded.db:1 folded.db:12
 grep -q 'point_\|n_' out && fail "heads that are cut"
 prints "a: strain 2 %"
 
+# What depends on a wrong `vary` is not told as an error of `set`, but what does not is.
+for shape in 'target.shape: [boxx, box]' 'target.shpe: [box]' 'shape: [boxx]'; do
+  printf 'name: g\nscene: basalt-sphere\nset: {target.height: 3 cm}\nvary: {%s}\n' "$shape" >wrong.yaml
+  expect 65 "$clast" plan wrong.yaml --no-trial
+  one_error
+done
+printf 'name: g\nscene: basalt-sphere\nset: {target.height: 3 cm}\nvary: {target.material: [basallt]}\n' >wrong.yaml
+expect 65 "$clast" plan wrong.yaml --no-trial
+says "set.target.height: has no effect"; says "did you mean 'basalt'"
+
 # A path of a table stays whole.
 expect 0 "$clast" converge --list
 prints "target.material.porosity.curve "
@@ -118,4 +128,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 31
+done_after 35
