@@ -20,7 +20,8 @@
 enum {
   FEWEST_SEEDS = 3,
   MOST_SEEDS = 10000,
-  STUDY_SEEDS = 1000, /* a study with more is no advice */
+  STUDY_SEEDS = 1000,    /* a study with more is no advice */
+  STUDY_FIRST_SEEDS = 4, /* of `clast converge` without --seeds */
   LOOKED_AT = 1000,
   UNIT_TEXT = 32 /* with the space before it */
 };
@@ -574,7 +575,7 @@ static const struct accuracy_option *finest_open(const struct accuracy *accuracy
 /* The command that studies the knob at a level, one on either side, and the scene's own, whose error is wanted. Levels
  * that would be marked are studied with another input of a shorter step. */
 static void append_study(const struct accuracy *accuracy, const struct campaign *campaign, const struct knob *knob,
-                         double value, char *next, size_t size) {
+                         double value, int64_t seeds, char *next, size_t size) {
   const double finer = knob->step_power < 0 ? 2 : 0.5;
   char own[64];
   ladder_setting(knob, campaign->scene, own, sizeof own);
@@ -597,6 +598,8 @@ static void append_study(const struct accuracy *accuracy, const struct campaign 
   for (size_t i = 0; i < 4; i++)
     if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
       text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit_of(campaign, knob));
+  if (seeds > STUDY_FIRST_SEEDS) /* not fewer than the study has */
+    text_append(next, size, " --seeds %" PRId64, seeds);
   text_append(next, size, "`");
 }
 
@@ -617,7 +620,7 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
       "do not help. Finer levels may show a limit%s%s%s",
       knob->name, value, *unit ? " " : "", unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
       run_s > 0 ? ")" : "");
-  append_study(accuracy, campaign, knob, value, next, size);
+  append_study(accuracy, campaign, knob, value, finest->n, next, size);
 }
 
 /* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
@@ -638,7 +641,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
     text_append(next, size, ". No setting that was studied is enough");
     if (middle >= best->within && accuracy->widest) {
       text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it", accuracy->widest->name);
-      append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, next, size);
+      append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, best->n, next, size);
     }
     return;
   }

@@ -1,6 +1,7 @@
 /* The rounds of a study as a series of campaigns: chooses the next levels and numbers of seeds. Runs a study from its
  * farm to its tables. */
 #include <math.h>
+#include <string.h>
 
 #include "campaign/converge/study.h"
 #include "campaign/terminal/progress.h"
@@ -297,7 +298,7 @@ static void tell_size(struct rounds *rounds) {
     knobs += points == 1; /* every point has the same */
   }
   const int64_t runs = count_missing(rounds, rule->first_seeds, &seconds),
-                all = count_missing(rounds, rule->most_seeds, &all_s);
+                all = count_missing(rounds, isnan(rule->within) ? rule->first_seeds : rule->most_seeds, &all_s);
   rounds->told |= !isnan(seconds);
   if (!rounds->told || rounds->quiet || all == 0)
     return;
@@ -310,9 +311,32 @@ static void tell_size(struct rounds *rounds) {
           points == 1 ? "point" : "points", knobs,
           points == 1 ? (knobs == 1 ? "knob" : "knobs") : (knobs == 1 ? "knob each" : "knobs each"),
           (long long)rule->first_seeds, (long long)runs, time, most);
-  if (!isnan(rule->within) && all > runs)
+  if (all > runs)
     fprintf(stderr, "clast: then more seeds until every bias is narrow (--within): at most %lld runs, about %s\n",
             (long long)all, all_time);
+}
+
+/* A study takes the place of an earlier one of the same knob, also of one with more seeds: says so. */
+static status tell_replaced(const struct rounds *rounds, struct store *store, struct error *error) {
+  const struct study *study = rounds->study;
+  for (size_t i = 0; !rounds->quiet && i < study->ladder_count; i++) {
+    const struct study_ladder *ladder = &study->ladder[i];
+    const char *knob = ladder->levels.knob->name;
+    int64_t before = 0;
+    ANSWER levels = ask_convergence_levels(store, ladder->base_point, ladder->base->kind->results_version,
+                                           study->quantity[0].column, error);
+    for (struct convergence_row row; ask_convergence_next(&levels, &row);)
+      if (strcmp(row.knob, knob) == 0 && row.n > before)
+        before = row.n;
+    TRY(answer_end(&levels));
+    if (before > ladder->seeds && ladder->seeds > 0)
+      fprintf(
+          stderr,
+          "clast: the study of %s in this store had %lld seeds; this one has %lld and takes its place. --seeds %lld "
+          "keeps as many\n",
+          knob, (long long)before, (long long)ladder->seeds, (long long)before);
+  }
+  return STATUS_OK;
 }
 
 static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
@@ -331,8 +355,10 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
     tell_size(rounds);
   study->budget_spent |= seconds_left(rounds) < 0;
   rounds->ladder = choose_ladder(rounds);
-  if (!rounds->ladder)
+  if (!rounds->ladder) {
+    TRY(tell_replaced(rounds, scheduler->store, error));
     return study_store(study, scheduler->store, error);
+  }
   return make_campaign(rounds, campaign, error);
 }
 

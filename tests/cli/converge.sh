@@ -471,6 +471,12 @@ prints "Left out, as their runs are in doubt (!) where the scene's own are not: 
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
 expect 0 "$clast" status coarse.db
 same "$(awk '/coarse grains/ { print $5, $6, $7 }' out)" "4 12 12" "points and runs of two studies with common levels"
+# A study with fewer seeds takes the place of a larger one, and says so.
+expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm --seeds 2 --within off
+says "the study of grains in this store had 3 seeds; this one has 2 and takes its place. --seeds 3 keeps as many"
+! grep -q "0 more runs" err || fail "nothing to do is told: $(cat err)"
+expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
+! grep -q "takes its place" err || fail "a larger study replaces: $(cat err)"
 # A study of several points names each of them, for people and for programs.
 printf 'name: each\nscene: disc-explosion\nset: {body.diameter: 6 cm, stop.end_time: 0.2 ms}\nvary: {threshold.strain: [1 %%, 3 %%]}\nstore: each.db\n' >each.yaml
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
@@ -546,4 +552,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 135
+done_after 137
