@@ -56,8 +56,8 @@ static status run(const struct command_line *line, struct error *error) {
     uncertainty_excluded(count, path);
     uncertainty_left_out(left_out);
   }
-  char apart[512];
-  TRY(ask_pairs_apart(pairs, apart, sizeof apart, error));
+  OWNED char *apart = NULL;
+  TRY(ask_pairs_apart(pairs, &apart, error));
   if (*apart)
     fprintf(stderr, "clast: a and b also differ in %s\n", apart);
   if (people) {

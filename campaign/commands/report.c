@@ -74,9 +74,9 @@ static status add_label(struct making *making, const char *column, struct error 
 
 /* How the store differs from the first one: inputs that none varies, or why there is no pair of points. */
 static status add_apart(struct making *making, const struct ask_pairs *pairs, struct error *error) {
-  char apart[512];
+  OWNED char *apart = NULL;
   struct error no_pair;
-  TRY(ask_pairs_apart(pairs, apart, sizeof apart, error));
+  TRY(ask_pairs_apart(pairs, &apart, error));
   TRY(ask_page_fact(making->page, "apart", apart, error));
   return ask_pairs_end(pairs, &no_pair) ? ask_page_fact(making->page, "no_pair", no_pair.message, error) : STATUS_OK;
 }

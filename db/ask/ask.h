@@ -465,8 +465,9 @@ const char *ask_pairs_quantity(const struct ask_pairs *pairs);
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
 /* The runs of a side (0, 1) that a person excluded, its ask_choice_left_out(), and the path of its store, borrowed. */
 int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path);
-/* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. */
-status ask_pairs_apart(const struct ask_pairs *pairs, char *text, size_t size, struct error *error);
+/* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. The caller
+ * frees *text, also after an error. */
+status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error);
 /* After the last pair. STATUS_USAGE: the sides have no point in common. */
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);
 void ask_pairs_free(struct ask_pairs *pairs); /* NULL is fine */

@@ -13,13 +13,17 @@
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
-struct group { /* the runs of one point */
-  char *inputs, label[ASK_POOL_LABEL];
+struct group {  /* the runs of one point */
+  char *list;   /* "path = value" of each varied input, with SEPARATOR between them: a value may have a comma */
+  char *inputs; /* the same for readers, with ", " */
+  char label[ASK_POOL_LABEL];
   int64_t point;
   bool paired;
   size_t first, count; /* in `values` */
   struct ask_doubts doubts;
 };
+#define SEPARATOR '\n' /* char(10) in SQL */
+
 struct side {
   char path[LIMITS_PATH];   /* of the store */
   int64_t excluded;         /* runs that a person excluded */
@@ -41,7 +45,7 @@ struct ask_pairs {
 static struct answer ask_values(struct store *store, const char *column, struct error *error) {
   return answer_to(
       store, error,
-      "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, ', ') FROM (SELECT path || ' = ' || "
+      "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, char(10)) FROM (SELECT path || ' = ' || "
       "CAST(value AS TEXT) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY "
       "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, \"%w\" FROM runs "
       "JOIN varied USING (point_id) WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE "
@@ -49,15 +53,26 @@ static struct answer ask_values(struct store *store, const char *column, struct 
       column);
 }
 
+/* The list with ", " for each SEPARATOR, which the caller frees; NULL: no memory. */
+static char *readable(const char *list) {
+  char *text = NULL;
+  FILE *out = text_open(&text);
+  for (; *list; list++)
+    fputs(*list == SEPARATOR ? ", " : (const char[]){*list, '\0'}, out);
+  return text_close(out, &text);
+}
+
 /* Adds a run to its point, which is the last one or a new one. */
 static status add_run(struct side *side, const struct answer *row, struct error *error) {
   const int64_t point = answer_integer(row, 1);
   if (side->group_count == 0 || side->groups[side->group_count - 1].point != point) {
     TRY(grow_or_fail(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups, "the runs", error));
-    char *inputs = strdup(side->one_point ? "" : answer_text(row, 0));
-    if (!inputs)
+    struct group *group = &side->groups[side->group_count++];
+    *group = (struct group){.point = point, .first = side->value_count};
+    group->list = strdup(side->one_point ? "" : answer_text(row, 0));
+    group->inputs = group->list ? readable(group->list) : NULL;
+    if (!group->inputs)
       return status_fail(error, STATUS_MEMORY, "no memory for the runs");
-    side->groups[side->group_count++] = (struct group){.inputs = inputs, .point = point, .first = side->value_count};
   }
   TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values, "the runs", error));
   side->values[side->value_count++] = (struct difference_value){answer_integer(row, 2), answer_real(row, 3)};
@@ -162,8 +177,10 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
 
 void ask_pairs_free(struct ask_pairs *pairs) {
   for (int k = 0; pairs && k < 2; k++) {
-    for (size_t i = 0; i < pairs->side[k].group_count; i++)
+    for (size_t i = 0; i < pairs->side[k].group_count; i++) {
+      free(pairs->side[k].groups[i].list);
       free(pairs->side[k].groups[i].inputs);
+    }
     free(pairs->side[k].groups);
     free(pairs->side[k].values);
   }
@@ -179,12 +196,12 @@ static struct group *partner_of(const struct group *group, struct side *side) {
   size_t low = 0, high = side->group_count;
   while (low < high) {
     const size_t middle = low + (high - low) / 2;
-    if (strcmp(side->groups[middle].inputs, group->inputs) < 0)
+    if (strcmp(side->groups[middle].list, group->list) < 0)
       low = middle + 1;
     else
       high = middle;
   }
-  for (; low < side->group_count && strcmp(side->groups[low].inputs, group->inputs) == 0; low++)
+  for (; low < side->group_count && strcmp(side->groups[low].list, group->list) == 0; low++)
     if (!side->groups[low].paired)
       return &side->groups[low];
   return NULL;
@@ -244,7 +261,7 @@ static status read_fixed(const struct side *side, struct fixed *fixed, struct er
 }
 
 /* Writes both values of an input that differs, that no side varies, and that follows from no other; counts it. */
-static void write_input(const struct fixed side[2], const struct field *row, size_t *count, char *text, size_t size) {
+static void write_input(const struct fixed side[2], const struct field *row, size_t *count, FILE *out) {
   char shown[2][FIELD_TEXT_SIZE] = {"none", "none"};
   bool follows = true;
   for (int k = 0; k < 2; k++) {
@@ -259,70 +276,80 @@ static void write_input(const struct fixed side[2], const struct field *row, siz
     field_show(row, &value, shown[k], sizeof shown[k]);
   }
   if (!follows && strcmp(shown[0], shown[1]) != 0 && (*count)++ < NAMED)
-    text_append(text, size, "%s%s (%s, %s)", *text ? ", " : "", row->path, shown[0], shown[1]);
+    fprintf(out, "%s%s (%s, %s)", ftell(out) > 0 ? ", " : "", row->path, shown[0], shown[1]);
 }
 
-status ask_pairs_apart(const struct ask_pairs *pairs, char *text, size_t size, struct error *error) {
+status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error) {
+  FILE *out = text_open(text);
   struct fixed side[2] = {{0}};
   status code = STATUS_OK;
   size_t count = 0;
-  *text = '\0';
   for (int k = 0; k < 2 && !code; k++)
     code = read_fixed(&pairs->side[k], &side[k], error);
   if (!code && strcmp(side[0].scene->name, side[1].scene->name) != 0)
-    text_append(text, size, "scene (%s, %s)", side[0].scene->name, side[1].scene->name);
+    fprintf(out, "scene (%s, %s)", side[0].scene->name, side[1].scene->name);
   for (size_t i = 0; !code && side[0].scene->kind == side[1].scene->kind && i < side[0].scene->kind->inputs->count; i++)
-    write_input(side, &side[0].scene->kind->inputs->rows[i], &count, text, size);
+    write_input(side, &side[0].scene->kind->inputs->rows[i], &count, out);
   if (count > NAMED)
-    text_append(text, size, " and %zu more inputs", count - NAMED);
+    fprintf(out, " and %zu more inputs", count - NAMED);
   for (int k = 0; k < 2; k++) {
     scene_free(side[k].scene);
     free(side[k].varied);
   }
-  return code;
+  return text_close(out, text) || code ? code : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
 
 enum { LOOKED_AT = 300 }; /* points of a side */
 
-/* The k-th input, "path = value", of a text of inputs, and its length; NULL: it has fewer. */
-static const char *input_at(const char *inputs, size_t k, size_t *length) {
-  for (; k > 0 && inputs; k--)
-    inputs = (inputs = strstr(inputs, ", ")) ? inputs + 2 : NULL;
-  const char *end = inputs ? strstr(inputs, ", ") : NULL;
-  *length = end ? (size_t)(end - inputs) : inputs ? strlen(inputs) : 0;
-  return *length ? inputs : NULL;
+/* The next input, "path = value", of a list; NULL: none. */
+static const char *next_input(const char *list, const char *input, size_t *length) {
+  if (input && !input[*length])
+    return NULL;
+  input = input ? input + *length + 1 : list;
+  *length = strcspn(input, (const char[]){SEPARATOR, '\0'});
+  return *length ? input : NULL;
 }
 
 static bool has_input(const struct side *side, const char *input, size_t length) {
-  const char *at;
-  size_t other;
-  for (size_t i = 0; i < side->group_count && i < LOOKED_AT; i++)
-    for (size_t k = 0; (at = input_at(side->groups[i].inputs, k, &other)); k++)
+  for (size_t i = 0; i < side->group_count && i < LOOKED_AT; i++) {
+    size_t other = 0;
+    for (const char *at = NULL; (at = next_input(side->groups[i].list, at, &other));)
       if (other == length && strncmp(at, input, length) == 0)
         return true;
+  }
   return false;
 }
 
-/* Writes the paths of the inputs of which the sides have no common value; "": each has one. */
+/* Has A a value of this path that B has, too? */
+static bool is_common(const struct ask_pairs *pairs, const char *path, size_t path_length) {
+  const struct side *b = &pairs->side[1];
+  for (size_t i = 0; i < b->group_count && i < LOOKED_AT; i++) {
+    size_t length = 0;
+    for (const char *input = NULL; (input = next_input(b->groups[i].list, input, &length));)
+      if (strncmp(input, path, path_length) == 0 && input[path_length] == ' ' &&
+          has_input(&pairs->side[0], input, length))
+        return true;
+  }
+  return false;
+}
+
+/* Writes the paths of the inputs of which the sides have no common value, of many the first NAMED; "": each has one. */
 static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) {
   const struct side *b = &pairs->side[1];
-  size_t length;
+  size_t length = 0, count = 0;
   *text = '\0';
-  for (size_t k = 0; input_at(b->groups[0].inputs, k, &length); k++) {
-    const char *path = input_at(b->groups[0].inputs, k, &length);
-    bool common = false;
-    for (size_t i = 0; i < b->group_count && i < LOOKED_AT && !common; i++) {
-      const char *input = input_at(b->groups[i].inputs, k, &length);
-      common = input && has_input(&pairs->side[0], input, length);
-    }
-    if (!common)
-      text_append(text, size, "%s%.*s", *text ? ", " : "", (int)strcspn(path, " "), path);
+  for (const char *input = NULL; (input = next_input(b->groups[0].list, input, &length));) {
+    const size_t path = strcspn(input, " ");
+    if (!is_common(pairs, input, path) && count++ < NAMED)
+      text_append(text, size, "%s%.*s", *text ? ", " : "", (int)path, input);
   }
+  if (count > NAMED)
+    text_append(text, size, " and %zu more inputs", count - NAMED);
 }
 
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];
-  char apart[200];
+  char apart[NAMED * FIELD_TEXT_SIZE];
   if (pairs->found > 0)
     return STATUS_OK;
   write_apart(pairs, apart, sizeof apart);

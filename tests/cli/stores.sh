@@ -93,6 +93,22 @@ says "clast: from one to the next stop end time changes, too"
 expect 0 "$clast" estimates own-rocks.db --studies
 same "$(head -1 out | tr -s ' ' | cut -d' ' -f1-5)" "point material particles runs M_1/M" "inputs of rocks and their study"
 
+# What tells two stores apart: a value with a comma is one value, and long values are whole.
+long=$(printf "x%.0s" $(seq 110))
+for name in dry wet; do
+  sed "s/^material: own/material: own, $name/" own.yaml >$name.yaml
+  sed "s/, $name/, $name 2/" $name.yaml >${name}2.yaml
+  sed "s/^name: .*/name: $name/; s|\[.*\]|[./$name.yaml, ./${name}2.yaml]|" own-rocks.yaml >of-$name.yaml
+  expect 0 "$clast" run of-$name.yaml --quiet
+  sed "s/, $name//" $name.yaml >$long-$name.yaml
+  printf '%s\n' "name: long-$name" 'scene: basalt-sphere' "set: {particles: 200, stop.end_time: 5 us, target.material: ./$long-$name.yaml, projectile.material: ./$long-$name.yaml, impact.angle: $([ $name = dry ] && echo 10 || echo 20) deg}" >long-$name.yaml
+  expect 0 "$clast" run long-$name.yaml --quiet
+done
+expect 64 "$clast" compare dry.db wet.db
+says "no common value of target.material.name. Name"
+expect 0 "$clast" compare long-dry.db long-wet.db
+says "own - $long-wet.yaml), impact.angle (10 deg, 20 deg), projectile.material.name (own - $long-dry.yaml, own - $long-wet.yaml)"
+
 # A store that only a study wrote shows results, and the inputs for which there is room.
 expect 0 "$clast" converge charged.yaml --knob time_step,integrator,stop --knob grains=1.2cm,1.069cm "${study[@]}" -q --store studied.db
 for of in estimates scatter spectrum exponents; do
@@ -254,4 +270,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 88
+done_after 94
