@@ -290,7 +290,7 @@ static void a_finer_setting_that_would_be_marked_is_none(void **state) {
   campaign->accuracy_within = 0.001;
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "clast converge t.yaml --set fidelity.time_step='5e-07 s' --knob "
-                                        "grains=0.016m,0.008m,0.004m,0.01069m`"));
+                                        "grains=0.016m,0.008m,0.004m,0.01069m --seeds 10`"));
   campaign_free(campaign);
 }
 
