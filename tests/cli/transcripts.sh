@@ -5,11 +5,17 @@
 . "$(dirname "$0")/lib.bash"
 ln -s "$toy" bin/clast
 # freeze STORE [WORDS]: times, memory and machine of its runs become numbers that are the same everywhere, and some runs get
-# the words of warnings. The order in which runs were stored, and their run_id, may differ.
+# the words of warnings. The order in which runs were stored, and their run_id, may differ. Runs that were begun before a
+# rule had ended their point (surplus) go: how many there are depends on the machine.
 cat >bin/freeze <<'PY'
 #!/usr/bin/python3
 import sqlite3, sys
 db = sqlite3.connect(sys.argv[1])
+surplus = "run_id IN (SELECT run_id FROM run WHERE surplus)"
+tables = [name for name, in db.execute("SELECT name FROM sqlite_master WHERE type = 'table' AND name <> 'run'")]
+for table in tables + ["run"]:
+    if "run_id" in [column[1] for column in db.execute(f"PRAGMA table_info({table})")]:
+        db.execute(f"DELETE FROM {table} WHERE {surplus}")
 db.execute("UPDATE run SET wall_time = point_id + 0.25 * replicate, cpu_time = point_id + 0.125 * replicate, peak_memory = 1024 * (1000 + 100 * point_id + replicate), host = 'here', finished_at = 1e9 + replicate")
 db.execute("UPDATE session SET started_at = '2026-01-01T00:00:00.000Z', ended_at = '2026-01-01T00:00:10.000Z', host = 'here', pid = 1")
 if len(sys.argv) > 2:
