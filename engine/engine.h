@@ -72,7 +72,7 @@ struct engine_materials {
 struct engine_kind {
   const char *name;                  /* "dem" */
   const char *doc;                   /* its model, with sources */
-  int dimensions;                    /* 2: masses are kg per metre of thickness; else 3 */
+  int dimensions;                    /* 2: masses are kg per metre of thickness; 3; 0: a scene's program knows */
   int results_version;               /* part of a run's identity: raised by hand when result bits change on purpose */
   const struct field_table *inputs;  /* the typed scene; includes a `fidelity.` section */
   const struct field_table *results; /* what this engine reports beyond struct outcome; table result_<engine> */

@@ -20,7 +20,7 @@ static const double TOLD = 0.9;                       /* share of the draws that
 static const double PRIOR = 4; /* runs that the common scatter counts as, beside those of a cell */
 static const double NOT_ONE = 4, NOT_ONE_SHARE = 0.1; /* chi-square and distance of curves that are not one */
 
-const char *const scaling_kind_names[] = {"found", "jump", "too-few", "no-crossing", "not-one-curve", NULL};
+const char *const scaling_kind_names[] = {"found", "jump", "too-few", "no-crossing", "not-one-curve", "not-told", NULL};
 
 enum { RATIO, ORDER, SECOND, CUTOFF, CURVES };
 enum { SUM_ORDER, SUM_SHARE, SUM_SECOND, SUM_THIRD, SUMS };
@@ -196,20 +196,35 @@ static double interpolate(const struct study *s, size_t level, double x, double 
 }
 
 /* Where the curves of two sizes cross, and ln r there: on the side of large P the curve of the larger size is lower, on
- * the other side it is higher, by CLEAR standard errors. False: they do not cross so. */
-static bool cross(const struct study *s, size_t small, size_t large, double *at, double *ratio) {
+ * the other side it is higher, by CLEAR standard errors. False: they do not cross so, and *out has where they are
+ * nearest. */
+static bool cross(const struct study *s, size_t small, size_t large, double *at, double *ratio, struct scaling *out) {
   const size_t end[2] = {s->first[small + 1], s->first[large + 1]};
   const struct cell *low = &s->cell[s->first[large]], *high = &s->cell[end[1] - 1];
   const double rising = high->y[ORDER] > low->y[ORDER] ? 1 : -1;
+  double least = NAN;              /* difference */
   double last_x = NAN, last = NAN; /* the last place where the curves clearly differ */
   for (size_t i = s->first[small], j = s->first[large]; i < end[0] || j < end[1];) {
     const bool first = j == end[1] || (i < end[0] && s->cell[i].control <= s->cell[j].control);
     const double x = s->cell[first ? i++ : j++].control;
     double variance[2] = {0, 0};
-    const double y = interpolate(s, small, x, &variance[0]);
-    const double difference = rising * (interpolate(s, large, x, &variance[1]) - y);
-    if (!(fabs(difference) > CLEAR * sqrt(variance[0] + variance[1])))
+    const double y[2] = {interpolate(s, small, x, &variance[0]), interpolate(s, large, x, &variance[1])};
+    const double difference = rising * (y[1] - y[0]);
+    if (isnan(difference))
       continue;
+    out->range[0] = isnan(out->range[0]) ? x : out->range[0];
+    out->range[1] = x;
+    const bool clear = fabs(difference) > CLEAR * sqrt(variance[0] + variance[1]);
+    if (!(fabs(difference) >= least)) {
+      least = fabs(difference);
+      out->nearest = x;
+      out->touch = !clear;
+      for (int k = 0; k < 2; k++)
+        out->nearest_q[k] = 1 / (1 + exp(y[k]));
+    }
+    if (!clear)
+      continue;
+    out->differ = true;
     if (last > 0 && difference < 0) {
       *at = last_x + (x - last_x) * last / (last - difference);
       *ratio = interpolate(s, large, *at, variance);
@@ -219,6 +234,25 @@ static bool cross(const struct study *s, size_t small, size_t large, double *at,
     last_x = x;
   }
   return false;
+}
+
+/* The second value of the control on each side of x, or the last one there. */
+static void look_about(const struct study *s, double x, double about[2]) {
+  for (int side = 0; side < 2; side++) {
+    double nearest[2] = {NAN, NAN};
+    const double sign = side ? 1 : -1;
+    for (size_t c = 0; c < s->cells; c++) {
+      const double far = sign * (s->cell[c].control - x);
+      if (far < 0 || far == nearest[0] || far == nearest[1])
+        continue;
+      if (!(far >= nearest[0])) {
+        nearest[1] = nearest[0];
+        nearest[0] = far;
+      } else if (!(far >= nearest[1]))
+        nearest[1] = far;
+    }
+    about[side] = x + sign * (isnan(nearest[1]) ? nearest[0] : nearest[1]);
+  }
 }
 
 /* Does the cell tell all means and their scatter? */
@@ -485,8 +519,10 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
   if (s->levels < SCALING_LEAST_SIZES)
     return STATUS_OK;
   out->kind = SCALING_NO_CROSSING;
-  if (!cross(s, 0, s->levels - 1, &s->centre, &ratio))
+  if (!cross(s, 0, s->levels - 1, &s->centre, &ratio, out))
     return STATUS_OK;
+  out->crossing = s->centre;
+  look_about(s, s->centre, out->about);
   out->kind = SCALING_TOO_FEW;
   if (!choose(s, ratio))
     return STATUS_OK;
@@ -495,12 +531,15 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
     used += s->cell[c].used;
   s->terms = used >= 10 ? TERMS : used >= 7 ? 3 : 2;
   mix_spread(s);
-  out->kind = SCALING_NOT_ONE;
+  out->kind = SCALING_NOT_TOLD;
   struct curve best = first_fit(s, 1, ratio), with_smallest = best;
   fit_all(s, 1, &best, value);
   fit_all(s, 0, &with_smallest, all);
   collapse(s, &best, ORDER, -value[SCALING_BETA], &out->chi_square[0], &out->distance[0]);
   collapse(s, &best, SECOND, value[SCALING_GAMMA], &out->chi_square[1], &out->distance[1]);
+  if (isnan(out->chi_square[0] + out->chi_square[1]))
+    return STATUS_OK;
+  out->kind = SCALING_NOT_ONE;
   for (int k = 0; k < 2; k++)
     if (!(out->chi_square[k] < NOT_ONE || out->distance[k] < NOT_ONE_SHARE))
       return STATUS_OK;
@@ -517,11 +556,11 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
   TRY(resample(s, &best, bias, out, error));
   const struct scaling_estimate *nu = &out->value[SCALING_NU];
   const bool jump = within(&out->value[SCALING_BETA], 0) && nu->estimate - nu->half_width <= 1.0 / s->dimensions;
-  out->kind = jump ? SCALING_JUMP : SCALING_FOUND;
+  out->kind = isnan(out->value[SCALING_CRITICAL].estimate) ? SCALING_NOT_TOLD : jump ? SCALING_JUMP : SCALING_FOUND;
   return STATUS_OK;
 }
 
-/* The means of P and of S, for a picture. */
+/* The means of P, S and Q, for a picture. */
 static status tell_cells(const struct study *s, struct scaling *out, struct error *error) {
   static const int which[] = {ORDER, SECOND};
   TRY(memory_array(&out->cell, s->cells, sizeof *out->cell, "the means of several sizes", error));
@@ -534,6 +573,9 @@ static status tell_cells(const struct study *s, struct scaling *out, struct erro
       told->half_width[k] = told->mean[k] * sample_student((size_t)cell->runs, 0.95) *
                             sqrt(cell->spread[which[k]] / cell->runs);
     }
+    told->mean[2] = 1 / (1 + exp(cell->y[RATIO]));
+    told->half_width[2] = told->mean[2] * (1 - told->mean[2]) * sample_student((size_t)cell->runs, 0.95) *
+                          sqrt(cell->spread[RATIO] / cell->runs);
   }
   return STATUS_OK;
 }
@@ -554,7 +596,14 @@ status scaling_find(size_t n, const struct scaling_run *runs, int dimensions, st
   __attribute__((cleanup(release))) struct study s = {.dimensions = dimensions};
   OWNED double(*sum)[SUMS] = NULL;
   OWNED double(*weight)[2] = NULL;
-  *out = (struct scaling){.kind = SCALING_TOO_FEW, .chi_square = {NAN, NAN}, .distance = {NAN, NAN}};
+  *out = (struct scaling){.kind = SCALING_TOO_FEW,
+                          .crossing = NAN,
+                          .about = {NAN, NAN},
+                          .nearest = NAN,
+                          .nearest_q = {NAN, NAN},
+                          .range = {NAN, NAN},
+                          .chi_square = {NAN, NAN},
+                          .distance = {NAN, NAN}};
   for (int v = 0; v < SCALING_VALUES; v++)
     out->value[v] = (struct scaling_estimate){NAN, NAN, NAN};
   TRY(gather(&s, n, runs, error));

@@ -47,8 +47,10 @@ enum scaling_kind {
   SCALING_TOO_FEW,     /* fewer than three sizes, or than two values of the control beside the crossing */
   SCALING_NO_CROSSING, /* the curves of the sizes do not cross, or the runs do not tell */
   SCALING_NOT_ONE,     /* they cross, but their curves are not one: the values are NaN */
+  SCALING_NOT_TOLD,    /* they cross, but no curve fits the runs, or not most of the resampled runs */
 };
-extern const char *const scaling_kind_names[]; /* "found", "jump", "too-few", "no-crossing", "not-one-curve" */
+extern const char
+    *const scaling_kind_names[]; /* "found", "jump", "too-few", "no-crossing", "not-one-curve", "not-told" */
 
 enum scaling_value {
   SCALING_CRITICAL,
@@ -63,6 +65,10 @@ enum scaling_value {
 struct scaling {
   enum scaling_kind kind;
   size_t sizes, runs; /* used */
+  /* Of Q of the least and the largest size: where they cross, and two values of the control on each side. If they do
+   * not: the value where they are nearest, Q there, and the range that both sizes have. NaN: none. */
+  double crossing, about[2], nearest, nearest_q[2], range[2];
+  bool differ, touch; /* by two standard errors somewhere; not by them at the nearest value */
   /* x_c, nu, beta/nu, gamma/nu, D, tau. `shift`, without the smallest size less with it, is
    * part of half_width */
   struct scaling_estimate {
@@ -72,7 +78,7 @@ struct scaling {
    * (Houdayer & Hartmann 2004, doi 10.1103/PhysRevB.70.014418), and rms distance from it as a share of its value. */
   double chi_square[2], distance[2];
   struct scaling_cell {                           /* the runs of one size and control */
-    double size, control, mean[2], half_width[2]; /* of P and of S; 95 % interval; NaN: one run */
+    double size, control, mean[3], half_width[3]; /* of P, S and Q; 95 % interval; NaN: one run */
     bool used;                                    /* by the fits */
   } * cell;                                       /* owned: scaling_release() */
   size_t cells;

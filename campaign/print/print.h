@@ -83,10 +83,11 @@ status print_sensitivity(struct store *store, const char *campaign, const char *
 struct scaling_choice {
   const char *size, *control; /* varied inputs; NULL: the one that sets the number of elements, and the other one */
   const char *quantity;       /* order parameter */
+  int64_t dimensions;         /* of the model of a program; 0: the engine knows them */
 };
 
 /* Prints a sentence that answers, and a row for each exponent; page NULL: no picture. STATUS_USAGE: no input sets the
- * number of elements, or several inputs vary beside it. */
+ * number of elements, several inputs vary beside it, or the model is not known to be plane. */
 status print_scaling(struct store *store, const struct scaling_choice *choice, enum table_format format,
                      const struct picture_page *page, struct error *error);
 

@@ -135,18 +135,29 @@ static bool follows(const struct points *points, size_t axis, size_t of, size_t 
   return true;
 }
 
-/* Does this input alone set the number of elements, and change it? */
+/* Does this input set the number of elements? Then points of one value differ less than points of two values. */
 static bool is_size(const struct points *points, size_t axis) {
-  bool changes = false;
+  double same = EQUAL_NUMBERS, other = HUGE_VAL;
   for (size_t i = 0; i < points->count; i++)
     for (size_t k = 0; k < i; k++) {
       const struct point *a = &points->point[i], *b = &points->point[k];
-      const bool equal = fabs(log(a->elements / b->elements)) < EQUAL_NUMBERS;
-      if (isnan(a->input[axis]) || (a->input[axis] == b->input[axis]) != equal)
+      const double ratio = fabs(log(a->elements / b->elements));
+      if (a->input[axis] == b->input[axis])
+        same = fmax(same, ratio);
+      else if (isnan(a->input[axis]) || isnan(ratio))
         return false;
-      changes = changes || !equal;
+      else
+        other = fmin(other, ratio);
     }
-  return changes;
+  return isfinite(other) && other > same;
+}
+
+/* The first input that sets the number of elements; their count: there is none. */
+static size_t size_axis(const struct points *points) {
+  size_t axis = 0;
+  while (axis < points->axes && !is_size(points, axis))
+    axis++;
+  return axis;
 }
 
 static status name_axis(struct store *store, const struct points *points, const char *name, size_t *axis,
@@ -161,11 +172,17 @@ static status name_axis(struct store *store, const struct points *points, const 
 }
 
 static status choose_size(struct store *store, struct points *points, const char *name, struct error *error) {
-  if (name)
-    return name_axis(store, points, name, &points->size, error);
-  for (points->size = 0; points->size < points->axes; points->size++)
-    if (is_size(points, points->size))
-      return STATUS_OK;
+  const size_t found = size_axis(points);
+  points->size = found;
+  if (name) {
+    TRY(name_axis(store, points, name, &points->size, error));
+    if (found < points->axes && !is_size(points, points->size))
+      return status_fail(error, STATUS_USAGE, "%s does not set the number of grains or particles; %s does: --size %s",
+                         points->axis[points->size].word, points->axis[found].word, points->axis[found].word);
+    return STATUS_OK;
+  }
+  if (found < points->axes)
+    return STATUS_OK;
   char list[1024] = "";
   for (size_t a = 0; a < points->axes; a++)
     text_append(list, sizeof list, "%s%s", a ? ", " : "", points->axis[a].word);
@@ -196,6 +213,22 @@ static status choose_control(struct store *store, struct points *points, const c
   return STATUS_OK;
 }
 
+static status set_dimensions(struct points *points, int stated, struct error *error) {
+  if (points->dimensions == 0 && stated == 0)
+    return status_fail(error, STATUS_USAGE,
+                       "clast does not know whether the model of this store's program is plane: if it is, add "
+                       "--dimensions 2 (L is the number of elements to the power 1/2)");
+  if (points->dimensions != 0 && stated != 0 && stated != points->dimensions)
+    return status_fail(error, STATUS_USAGE, "--dimensions is for programs (`engine: command`): these scenes have %d",
+                       points->dimensions);
+  points->dimensions = points->dimensions ? points->dimensions : stated;
+  return points->dimensions == 2
+             ? STATUS_OK
+             : status_fail(error, STATUS_USAGE,
+                           "clast scaling is for scenes in the plane: for bodies in space its intervals are too "
+                           "narrow (of a cubic lattice, 10 of 20 held beta/nu)");
+}
+
 /* Sizes as lengths in elements; sums of squares and cubes in elements, over their number. */
 static void set_sizes(struct points *points) {
   for (size_t i = 0; i < points->count; i++) {
@@ -219,30 +252,79 @@ static void set_sizes(struct points *points) {
 
 /* ---- the answer ---- */
 
+static const char *unit_of(const struct ask_column *column) {
+  return strcmp(column->unit, "1") == 0 ? "" : column->unit;
+}
+
 static void write_value(const struct scaling *found, enum scaling_value v, double factor, char text[UNCERTAINTY_TEXT]) {
   const struct scaling_estimate *value = &found->value[v];
-  if (isnan(value->estimate))
-    snprintf(text, UNCERTAINTY_TEXT, "not told");
+  uncertainty_number(value->estimate / factor, value->half_width / factor, text);
+}
+
+/* What the runs lack for exponents: ` Next: ...`. */
+static void add_next(const struct points *points, const struct scaling *found, char *text, size_t size) {
+  const struct ask_column *control = &points->axis[points->control];
+  text_append(text, size, " Next: values of %s between %.4g and %.4g%s%s for every size, or more seeds.", control->word,
+              found->about[0] / control->factor, found->about[1] / control->factor, *unit_of(control) ? " " : "",
+              unit_of(control));
+}
+
+static void write_no_crossing(const struct points *points, const struct scaling *found, char *text, size_t size) {
+  const struct ask_column *control = &points->axis[points->control];
+  const char *unit = unit_of(control), *gap = *unit ? " " : "";
+  const double at = found->nearest / control->factor;
+  if (isnan(found->nearest)) {
+    text_append(text, size,
+                "No crossing: the least and the largest size have no %s in common. Next: the same values of "
+                "%s for every size.",
+                control->word, control->word);
+    return;
+  }
+  const bool end = found->nearest == found->range[0] || found->nearest == found->range[1];
+  char where[64] = "outside this range";
+  if (end)
+    snprintf(where, sizeof where, "%s %.4g%s%s", found->nearest == found->range[0] ? "below" : "above", at, gap, unit);
+  text_append(
+      text, size,
+      "No crossing: from %.4g to %.4g%s%s the curves of Q of the least and the largest size do not cross%s. They "
+      "are nearest at %.4g%s%s (Q %.2g and %.2g)",
+      found->range[0] / control->factor, found->range[1] / control->factor, gap, unit,
+      found->touch ? ", as far as these runs tell" : "", at, gap, unit, found->nearest_q[0], found->nearest_q[1]);
+  if (found->touch)
+    text_append(
+        text, size,
+        ": %s do they differ by two standard errors. Next: more seeds, sizes further apart, or values of %s %s.",
+        found->differ ? "only elsewhere" : "nowhere", control->word, where);
   else
-    uncertainty_number(value->estimate / factor, value->half_width / factor, text);
+    text_append(text, size,
+                ". So there is no critical %s in this range, and there are no exponents. Next: values of %s %s.",
+                control->word, control->word, where);
 }
 
 static void write_answer(const struct points *points, const char *quantity, const struct scaling *found) {
   const struct ask_column *size = &points->axis[points->size], *control = &points->axis[points->control];
-  const bool unit = *control->unit && strcmp(control->unit, "1") != 0;
-  char text[2048] = "", at[UNCERTAINTY_TEXT], value[UNCERTAINTY_TEXT], mark[UNCERTAINTY_TEXT];
+  char text[2048] = "", at[UNCERTAINTY_TEXT], value[UNCERTAINTY_TEXT], mark[UNCERTAINTY_TEXT], near[64], lost[64] = "";
+  const char *unit = unit_of(control), *gap = *unit ? " " : "";
   uncertainty_mark(&points->doubts, mark);
   write_value(found, SCALING_CRITICAL, control->factor, at);
-  text_append(at, sizeof at, "%s%s%s", unit ? " " : "", unit ? control->unit : "", mark);
+  text_append(at, sizeof at, "%s%s%s", gap, unit, mark);
+  snprintf(near, sizeof near, "%.3g%s%s", found->crossing / control->factor, gap, unit);
   switch (found->kind) {
   case SCALING_FOUND:
-    text_append(text, sizeof text, "Critical %s: %s (95 %%), with", control->word, at);
+    text_append(text, sizeof text, "Critical %s: %s (95 %%)", control->word, at);
     for (int v = SCALING_NU; v < SCALING_VALUES; v++) {
+      const bool told = !isnan(found->value[v].estimate);
       write_value(found, v, 1, value);
-      text_append(text, sizeof text, "%s %s %s", v > SCALING_NU ? "," : "", names[v], value);
+      text_append(told ? text : lost, told ? sizeof text : sizeof lost, "%s %s %s",
+                  told    ? ","
+                  : *lost ? ","
+                          : "",
+                  names[v], told ? value : "");
     }
     text_append(text, sizeof text, ". The curves of %zu sizes are one (chi-square %.2g of %s, %.2g of S).",
                 found->sizes, found->chi_square[0], quantity, found->chi_square[1]);
+    if (*lost)
+      text_append(text, sizeof text, " Most resampled runs give no%s: more seeds may.", lost);
     break;
   case SCALING_JUMP:
     text_append(text, sizeof text,
@@ -251,26 +333,30 @@ static void write_answer(const struct points *points, const char *quantity, cons
                 control->word, at, points->dimensions);
     break;
   case SCALING_TOO_FEW:
-    if (found->sizes < SCALING_LEAST_SIZES)
+    if (found->sizes < SCALING_LEAST_SIZES) {
       text_append(text, sizeof text, "Too few sizes: the runs have %zu, by %s; exponents need %d.", found->sizes,
                   size->word, SCALING_LEAST_SIZES);
-    else
-      text_append(text, sizeof text,
-                  "Too few points: a size has fewer than two values of %s, with %d runs each, near the crossing.",
-                  control->word, SCALING_LEAST_RUNS);
-    break;
-  case SCALING_NO_CROSSING:
+      break;
+    }
     text_append(text, sizeof text,
-                "No crossing: between the least and the largest %s the curves of the sizes do not cross, or these runs "
-                "do not tell. So there is no critical %s, and there are no exponents.",
-                control->word, control->word);
+                "Too few points: a size has fewer than two values of %s, with %d runs each, near the crossing at %s.",
+                control->word, SCALING_LEAST_RUNS, near);
+    add_next(points, found, text, sizeof text);
     break;
+  case SCALING_NO_CROSSING: write_no_crossing(points, found, text, sizeof text); break;
   case SCALING_NOT_ONE:
     text_append(text, sizeof text,
-                "Not one curve: the sizes cross, but no exponents make their curves one (chi-square %.2g of %s, %.2g "
-                "of S; they are %.0f and %.0f %% apart).",
-                found->chi_square[0], quantity, found->chi_square[1], 100 * found->distance[0],
+                "Not one curve: the sizes cross near %s, but no exponents make their curves one (chi-square %.2g of "
+                "%s, %.2g of S; they are %.0f and %.0f %% apart).",
+                near, found->chi_square[0], quantity, found->chi_square[1], 100 * found->distance[0],
                 100 * found->distance[1]);
+    add_next(points, found, text, sizeof text);
+    break;
+  case SCALING_NOT_TOLD:
+    text_append(text, sizeof text, "Too few runs for exponents: the sizes cross near %s, but %s.", near,
+                isnan(found->chi_square[0] + found->chi_square[1]) ? "no curve through that crossing fits them"
+                                                                   : "most resampled runs give no critical value");
+    add_next(points, found, text, sizeof text);
     break;
   }
   text_wrap(text, 0, 0, COLUMNS, stdout);
@@ -339,19 +425,20 @@ static status draw(const struct points *points, const char *quantity, const stru
     x[c] = scaled ? (cell->control - *value[0]) / control->factor * pow(cell->size, 1 / *value[1])
                   : cell->control / control->factor;
     for (int k = 0; k < 2; k++) {
+      const int of = k && !scaled ? 2 : k; /* Q instead of S: the curves that should cross */
       const double scale = scaled ? pow(cell->size, k ? -*value[3] : *value[2]) : 1;
-      y[c][k][0] = scale * cell->mean[k];
-      y[c][k][1] = scale * (cell->mean[k] - cell->half_width[k]);
-      y[c][k][2] = scale * (cell->mean[k] + cell->half_width[k]);
+      y[c][k][0] = scale * cell->mean[of];
+      y[c][k][1] = scale * (cell->mean[of] - cell->half_width[of]);
+      y[c][k][2] = scale * (cell->mean[of] + cell->half_width[of]);
     }
   }
   const char *unit = *control->unit && strcmp(control->unit, "1") != 0 ? control->unit : NULL;
   snprintf(axis, sizeof axis, scaled ? "(%s − critical %s) L^(1/ν)%s%s%s" : "%s%.0s%s%s%s", control->word,
            control->word, unit ? " (" : "", unit ? unit : "", unit ? ")" : "");
   snprintf(panel[0], sizeof panel[0], scaled ? "%s × L^(β/ν)" : "%s", quantity);
-  snprintf(panel[1], sizeof panel[1], scaled ? "S × L^(−γ/ν)" : "S");
+  snprintf(panel[1], sizeof panel[1], scaled ? "S × L^(−γ/ν)" : "Q, of the largest in Σm²");
   snprintf(caption, sizeof caption, "means with 95 %% intervals over seeds%s",
-           scaled ? "" : "; not scaled: no exponents");
+           scaled ? "" : "; not scaled: no exponents. Q crosses at a critical value");
   charts_doubts(&points->doubts, caption, sizeof caption);
   const struct picture_words words = {scaled ? "Collapse of the sizes" : "The sizes", caption, axis, NULL};
   return picture_collapse(page, &words, (const char *const[]){panel[0], panel[1]}, sizes, size, error);
@@ -364,18 +451,15 @@ status print_scaling(struct store *store, const struct scaling_choice *choice, e
   SCALING found = {0};
   TRY(ask_group_quantity(store, choice->quantity, quantity, error));
   TRY(read_points(store, quantity, &points, error));
+  TRY(set_dimensions(&points, (int)choice->dimensions, error));
   TRY(choose_size(store, &points, choice->size, error));
   TRY(choose_control(store, &points, choice->control, error));
   set_sizes(&points);
-  if (points.dimensions != 2)
-    return status_fail(
-        error, STATUS_USAGE,
-        "clast scaling is for scenes in the plane: for bodies in space its intervals are too narrow (of a "
-        "cubic lattice, 10 of 20 held beta/nu)");
   TRY(scaling_find(points.runs, points.run, points.dimensions, &found, error));
   if (table_for_people(format))
     write_answer(&points, quantity, &found);
-  if (!table_for_people(format) || (found.kind != SCALING_TOO_FEW && found.kind != SCALING_NO_CROSSING))
+  const bool has_rows = found.kind == SCALING_FOUND || found.kind == SCALING_JUMP || found.kind == SCALING_NOT_ONE;
+  if (!table_for_people(format) || has_rows)
     TRY(print_rows(&points, quantity, &found, format, error));
   if (table_for_people(format)) {
     words_print(stderr, "",

@@ -480,7 +480,7 @@ void ask_pairs_drop(struct ask_pairs **pairs); /* for ASK_PAIRS */
 
 struct point_data {
   int64_t point_id, results_version;
-  int dimensions;          /* of the engine: 2 or 3 */
+  int dimensions;          /* of the engine: 2, 3, or 0: not known */
   struct pooled_runs runs; /* in order of replicate; all fragments, single elements included */
   double element_mass;     /* mean over the runs, kg; NaN when the store holds no estimates of them */
   double complete_mass;    /* mean over the runs, kg: no window begins below this mass; NaN: not known */
@@ -585,7 +585,7 @@ const struct ask_pool *ask_pools_next(struct ask_pools *pools);
 /* The last call: frees the pools and returns their status. */
 status ask_pools_end(struct ask_pools *pools);
 
-/* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
+/* Dimensions of the engine of the store's first point, 2, 3, or 0 (not known): masses of 2 are kg per metre. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
 const char *ask_pool_mass_unit(int dimensions); /* "kg/m", "kg" */
 

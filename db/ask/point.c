@@ -21,7 +21,7 @@ static status read_version(struct store *store, int64_t point_id, struct point_d
     if (out->results_version == 0)
       out->results_version = answer_integer(&answer, 0);
     const struct engine_kind *kind = engine_find(answer_text(&answer, 1), NULL);
-    out->dimensions = kind && kind->dimensions == 2 ? 2 : 3;
+    out->dimensions = kind ? kind->dimensions : 3;
   }
   return answer_end(&answer);
 }

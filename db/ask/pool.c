@@ -222,7 +222,7 @@ struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *ch
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error) {
   ANSWER answer = answer_to(store, error, "SELECT engine FROM point ORDER BY point_id LIMIT 1");
   const struct engine_kind *kind = answer_next(&answer) ? engine_find(answer_text(&answer, 0), NULL) : NULL;
-  *dimensions = kind && kind->dimensions == 2 ? 2 : 3;
+  *dimensions = kind ? kind->dimensions : 3;
   return answer_end(&answer);
 }
 

@@ -311,7 +311,7 @@ static const struct field_table no_results = {.name = "command result",
 
 const struct engine_kind command_engine = {
     .name = "command",
-    .dimensions = 3,
+    .dimensions = 0,
     .doc = "Runs a program that the scene names: its section `command` tells inputs, files, results and limits "
            "(engine/command/README.md). Needs --allow-commands.",
     .results_version = 2,

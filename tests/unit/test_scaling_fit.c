@@ -145,6 +145,53 @@ static void curves_that_do_not_cross(void **state) {
   find(n, run, &found);
   assert_int_equal(found.kind, SCALING_NO_CROSSING);
   assert_true(isnan(found.value[SCALING_CRITICAL].estimate));
+  /* Q is p^2 over p^2 + 0.1 (1 - p)^2 for all sizes, but for 2 % of noise: it differs nowhere. */
+  assert_true(!found.differ && found.touch && isnan(found.crossing));
+  assert_true(found.range[0] == 12 && found.range[1] == 16);
+  assert_true(found.nearest >= 12 && found.nearest <= 16 && fabs(found.nearest_q[1] - found.nearest_q[0]) < 0.02);
+  for (size_t i = 0; i < n; i++) /* nearest at the largest control */
+    run[i].second *= 1 + (16.2 - run[i].control) * run[i].size;
+  scaling_release(&found);
+  find(n, run, &found);
+  assert_int_equal(found.kind, SCALING_NO_CROSSING);
+  assert_true(found.differ && !found.touch && found.nearest == 16);
+}
+
+/* Curves that cross, but are no steeper at the largest size than at the middle one; and two runs a point that scatter
+ * more than the curves change. There are no values, no NaN is told as a distance, and the place of the crossing is. */
+static void runs_that_tell_no_values(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL], some[ALL];
+  static const double slope[] = {0.1, 2, 1};
+  SCALING found;
+  size_t n = make(&(struct law){3, 0, 0, 1}, run);
+  for (size_t i = 0; i < n; i++) {
+    const double square = run[i].size * run[i].size, at = slope[lround(log2(run[i].size / 10))];
+    run[i].largest = 0.4 * (1 + 0.01 * noise(run[i].seed, i, 5));
+    run[i].order = run[i].control;
+    run[i].second = 0.16 * square * exp(-at * (run[i].control - CRITICAL));
+  }
+  find(n, run, &found);
+  assert_int_equal(found.kind, SCALING_NOT_TOLD);
+  assert_near(found.crossing, CRITICAL, 0.1);
+  assert_near(found.about[0], 13.2, 0.41);
+  assert_near(found.about[1], 14.8, 0.41);
+  int not_told = 0;
+  n = make(&(struct law){3, 0.2, 0, 1}, run);
+  for (size_t i = 0; i < n; i++)
+    run[i].second *= exp(1.2 * noise(run[i].seed, i, 6));
+  for (uint64_t first = 1; first < SEEDS; first += 2) {
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+      if (run[i].seed - first < 2 && run[i].control < 15)
+        some[count++] = run[i];
+    scaling_release(&found);
+    find(count, some, &found);
+    const bool told = found.kind == SCALING_FOUND || found.kind == SCALING_JUMP;
+    assert_true(told == !isnan(found.value[SCALING_CRITICAL].estimate));
+    not_told += found.kind == SCALING_NOT_TOLD && isfinite(found.chi_square[0]);
+  }
+  assert_true(not_told > 0);
 }
 
 /* A body breaks into halves at a threshold of its own, or stays whole: the thresholds scatter as L^-2. */
@@ -211,6 +258,7 @@ int main(void) {
       cmocka_unit_test(the_order_of_runs_and_the_unit_of_x_change_nothing),
       cmocka_unit_test(two_sizes_are_too_few),
       cmocka_unit_test(curves_that_do_not_cross),
+      cmocka_unit_test(runs_that_tell_no_values),
       cmocka_unit_test(a_jump_is_told),
       cmocka_unit_test(curves_that_are_not_one),
       cmocka_unit_test(whole_bodies_count),
