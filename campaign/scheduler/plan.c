@@ -156,7 +156,7 @@ struct scene *plan_coarsen_like(const struct scene *scene, const char *setting) 
 
 /* ---- the plan ---- */
 
-enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000, SAMPLED = 8 };
+enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000, SAMPLED = PLAN_SAMPLES };
 #define NOTHING ((double)NAN)
 
 /* Bytes of a run's rows without its masses: run and result row, estimates, about twenty bins of its spectrum.
@@ -245,10 +245,14 @@ static status judge(const struct campaign *campaign, const struct scene *scene, 
   return code;
 }
 
+static double work_of(const struct scene *scene) {
+  return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+}
+
 /* Counts a point. Keeps a copy of it as a sample, and the point itself if it is the most expensive one. Takes ownership
  * of the scene. */
 static void take_point(struct plan *plan, struct looking *looking, struct scene *scene, bool sample) {
-  const double work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+  const double work = work_of(scene);
   const double memory = scene->kind->memory ? (double)scene->kind->memory(scene->inputs) : 0;
   plan->points_looked_at++;
   plan->memory_most = fmax(plan->memory_most, memory);
@@ -263,6 +267,10 @@ static void take_point(struct plan *plan, struct looking *looking, struct scene 
   scene_free(looking->costliest);
   looking->costliest = scene;
   looking->work_most = work;
+}
+
+bool plan_is_sample(uint64_t i, uint64_t points, size_t before) {
+  return before < SAMPLED && 2 * SAMPLED * (i + 1) > (2 * before + 1) * points;
 }
 
 /* Samples points evenly spread over the part of the design that can be generated in a short time. */
@@ -286,7 +294,7 @@ static status look(const struct campaign *campaign, struct store *store, struct 
     ask(campaign, scene, store, looking);
     if (campaign->per_point == 0 && stride == 1)
       TRY(judge(campaign, scene, store, looking, error));
-    take_point(plan, looking, scene, looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED));
+    take_point(plan, looking, scene, plan_is_sample(i, walked, looking->sampled));
   }
   return looking->costliest
              ? STATUS_OK
@@ -297,12 +305,13 @@ static double whole_s(const struct plan_trial *run) {
   return run->prepare_s + run->step_s + run->finish_s;
 }
 
-/* Mean time of a run over the sampled points divided by `one`, the time of such a run of the most expensive point.
- * Times whole runs, or coarse ones if a setting is given, until the time is used up. NaN: no point was timed. */
-static double time_points(const struct campaign *campaign, const struct looking *looking, const char *setting,
-                          double one, double until) {
-  double sum = 0;
-  size_t count = 0;
+double plan_mean(const struct plan_samples *samples, double mean_work) {
+  return samples->work > 0 ? samples->seconds / samples->work * mean_work : (double)NAN;
+}
+
+/* Times whole runs of the sampled points, or coarse ones if a setting is given, until the time is used up. */
+static void time_points(const struct campaign *campaign, const struct looking *looking, const char *setting,
+                        double until, struct plan_samples *samples) {
   for (size_t i = 0; i < looking->sampled && spent_s() < until; i++) {
     struct error ignored;
     struct plan_trial run = {0};
@@ -315,10 +324,10 @@ static double time_points(const struct campaign *campaign, const struct looking 
     scene_free(coarse);
     if (code != STATUS_OK || !run.finished)
       continue;
-    sum += whole_s(&run);
-    count++;
+    samples->seconds += whole_s(&run);
+    samples->work += work_of(point);
+    samples->most = fmax(samples->most, whole_s(&run));
   }
-  return count ? sum / (double)count / one : (double)NAN;
 }
 
 /* For a trial that did not end: estimates the time of the whole run, and gives the setting and time of a coarse run
@@ -360,8 +369,12 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
   double one = plan->run_s_most;
   if (!run.finished)
     extrapolate(looking, seed, seconds, &run, plan, setting, &one);
+  struct plan_samples samples = {0};
   if (plan->trial_whole)
-    plan->share_of_most = time_points(campaign, looking, run.finished ? NULL : setting, one, begin + seconds);
+    time_points(campaign, looking, run.finished ? NULL : setting, begin + seconds, &samples);
+  const double whole = plan->run_s_most / one, mean_work = looking->work / (double)plan->points_looked_at;
+  plan->run_s_mean = whole * plan_mean(&samples, mean_work);
+  plan->run_s_most = fmax(plan->run_s_most, whole * samples.most);
   return STATUS_OK;
 }
 
@@ -397,12 +410,9 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
     plan->points_ended = looking->ended;
   }
   if (plan->trial_made) {
-    plan->run_s_mean = looking->work_most > 0 ? plan->run_s_most * looking->work / looked / looking->work_most
-                                              : plan->run_s_most;
-    if (!isnan(plan->share_of_most)) {
-      plan->run_s_mean = plan->run_s_most * plan->share_of_most;
-      plan->run_s_most = fmax(plan->run_s_most, plan->run_s_mean);
-    }
+    if (isnan(plan->run_s_mean)) /* no other point was timed */
+      plan->run_s_mean = looking->work_most > 0 ? plan->run_s_most * looking->work / looked / looking->work_most
+                                                : plan->run_s_most;
     plan->disk_bytes = (double)plan->runs_most * (BYTES_PER_RUN + BYTES_PER_FRAGMENT * (double)fragments);
   } else if (looking->timed) {
     plan->run_s_mean = looking->wall_s / (double)looking->timed;
@@ -419,11 +429,7 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
 
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
                  struct error *error) {
-  *plan = (struct plan){.threads = 1,
-                        .run_s_mean = NOTHING,
-                        .run_s_most = NOTHING,
-                        .disk_bytes = NOTHING,
-                        .share_of_most = NOTHING};
+  *plan = (struct plan){.threads = 1, .run_s_mean = NOTHING, .run_s_most = NOTHING, .disk_bytes = NOTHING};
   struct looking looking = {0};
   struct store *store = NULL;
   struct error ignored = {0};

@@ -240,9 +240,7 @@ struct plan {
   char costliest[512];               /* the point of `model`, as people read it; "": there is one point */
   bool store_exists;
   bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
-  bool trial_whole;     /* times are of whole runs, measured or estimated from a coarse run; else upper bounds */
-  double share_of_most; /* mean time of a run divided by that of the most expensive point; NaN: taken from the engine's
-                           measure of work */
+  bool trial_whole; /* times are of whole runs, measured or estimated from a coarse run; else upper bounds */
   double run_s_mean,
       run_s_most; /* per run; NaN without trial and without finished runs. An upper bound unless finished */
   double cpu_s_least, cpu_s_most;   /* processor time of the remaining runs */
@@ -289,6 +287,19 @@ double plan_whole(const struct plan_trial *piece, const struct plan_trial *coars
 
 /* The same without a coarse run: time up to the hard end of the run, which most runs do not reach. */
 double plan_to_hard_end(const struct plan_trial *piece);
+
+/* Points whose runs are timed: at most this many, in the middle of equal parts of the design. Is it point i of `points`
+ * when so many `before` it are samples? */
+enum { PLAN_SAMPLES = 8 };
+bool plan_is_sample(uint64_t i, uint64_t points, size_t before);
+
+/* Mean time of a run over points of this mean work: expensive points count by their work, also if few were timed. NaN:
+ * none was timed. */
+struct plan_samples {
+  double seconds, work; /* sums */
+  double most;          /* s */
+};
+double plan_mean(const struct plan_samples *samples, double mean_work);
 
 /* Coarsens the scene by the first knob of its engine that has a step (particles, grains), so that a whole run takes
  * about `seconds`. `rate`: upper bound of processor seconds per unit of the engine's work. The caller owns *coarse;

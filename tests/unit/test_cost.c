@@ -158,6 +158,29 @@ static void keys_of_a_plan(void **state) {
   campaign_free(campaign);
 }
 
+/* Four sizes at seven speeds, the sizes one after the other: two points of each are timed. A run takes 2 s for each
+ * unit of work, and the time was used up before the last size: the mean is that of all 28 points. */
+static void all_sizes_count_in_a_mean(void **state) {
+  (void)state;
+  static const double work[] = {1, 4, 13, 46};
+  size_t of_size[4] = {0}, before = 0;
+  struct plan_samples samples = {0};
+  for (uint64_t i = 0; i < 28; i++)
+    if (plan_is_sample(i, 28, before)) {
+      before++;
+      of_size[i / 7]++;
+      samples.seconds += i < 21 ? 2 * work[i / 7] : 0;
+      samples.work += i < 21 ? work[i / 7] : 0;
+    }
+  for (int k = 0; k < 4; k++)
+    assert_int_equal(of_size[k], 2);
+  NEAR(plan_mean(&samples, 64 / 4.0), 2 * 64 / 4.0, 1e-9);
+  assert_true(isnan(plan_mean(&(struct plan_samples){0}, 1)));
+  for (uint64_t points = 1; points <= PLAN_SAMPLES; points++) /* few points: all of them */
+    for (uint64_t i = 0; i < points; i++)
+      assert_true(plan_is_sample(i, points, i));
+}
+
 /* A run of two threads takes half of its processor time; the trial itself runs on one. */
 static void threads_share_the_time(void **state) {
   (void)state;
@@ -183,8 +206,12 @@ static void threads_share_the_time(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(time_left),      cmocka_unit_test(prediction),
-                                     cmocka_unit_test(whole_runs),     cmocka_unit_test(a_run_told_by_its_beginning),
-                                     cmocka_unit_test(keys_of_a_plan), cmocka_unit_test(threads_share_the_time)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(time_left),
+                                     cmocka_unit_test(prediction),
+                                     cmocka_unit_test(whole_runs),
+                                     cmocka_unit_test(a_run_told_by_its_beginning),
+                                     cmocka_unit_test(all_sizes_count_in_a_mean),
+                                     cmocka_unit_test(keys_of_a_plan),
+                                     cmocka_unit_test(threads_share_the_time)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
