@@ -66,6 +66,10 @@ status crossing_find(const struct crossing_data *data, struct crossing *out, str
  * about a sixth. */
 size_t crossing_next(const struct crossing *found, size_t runs, double place[CROSSING_PLACES]);
 
+/* Runs that an interval of this width needs, by the one that `runs` gave: widths fall as the root of their number, at
+ * best. Two digits. */
+size_t crossing_runs_for(size_t runs, double width, double within);
+
 /* Is this an answer? A crossing is one if its interval is at most this wide. */
 bool crossing_is_answer(const struct crossing *found, double within);
 

@@ -32,9 +32,7 @@ double find_place(const struct find *find, const struct field_value *value) {
                            : (number - find->from) / (find->to - find->from);
 }
 
-/* Widest interval of an answer as a share of the bracket, for the interval found. An interval between neighbouring
- * whole numbers cannot become narrower. */
-static double widest(const struct find *find) {
+double find_widest(const struct find *find) {
   struct field_value low, high;
   find_value(find, find->found.low, &low);
   find_value(find, find->found.high, &high);
@@ -322,10 +320,9 @@ static void tell(const struct find *find) {
   find->note(find->note_context, text);
 }
 
-static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
-  struct find *find = context;
+static status add_round(struct find *find, struct store *store, struct error *error) {
   for (size_t i = 0; i < find->places; i++)
-    TRY(read_place(find, scheduler->store, &find->place[i], error));
+    TRY(read_place(find, store, &find->place[i], error));
   find->runs += find->places * find->each;
   const struct crossing_data data = {.n = find->runs,
                                      .x = find->x,
@@ -334,7 +331,17 @@ static status end_round(void *context, const struct scheduler *scheduler, struct
                                      .share = find->share};
   TRY(crossing_find(&data, &find->found, error));
   find->failed = find->runs - find->found.n;
-  find->answered = find->narrow = crossing_is_answer(&find->found, widest(find));
+  const struct crossing *found = &find->found; /* widths at runs that grow by a factor are enough */
+  const bool grown = find->widths == 0 || 5 * find->runs >= 7 * find->width[find->widths - 1].runs;
+  if (found->kind == CROSSING_FOUND && grown && find->widths < FIND_WIDTHS)
+    find->width[find->widths++] = (struct find_width){find->runs, found->high - found->low};
+  find->answered = find->narrow = crossing_is_answer(&find->found, find_widest(find));
+  return STATUS_OK;
+}
+
+static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
+  struct find *find = context;
+  TRY(add_round(find, scheduler->store, error));
   tell(find);
   return STATUS_OK;
 }
@@ -363,17 +370,73 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   return request->picture ? find_print_picture(find, request->picture, &request->chart, error) : STATUS_OK;
 }
 
-/* The cost of most runs, spread over the bracket. */
+/* Has the store the next round, at least half of its runs? Others failed, or are still to be made. */
+static status has_round(const struct find *find, struct store *store, bool *there, struct error *error) {
+  struct campaign round = find->limits;
+  size_t count = 0;
+  round.first_seed += (int64_t)find->runs;
+  for (size_t i = 0; i < find->places; i++) {
+    SCENE scene = campaign_point_scene_from(find->base, &find->limits, &find->place[i], error);
+    if (!scene)
+      return STATUS_CONTENT;
+    for (size_t r = 0; r < find->each; r++) {
+      uint8_t identity[16];
+      scene_identity(scene, campaign_seed(&round, scene, (int64_t)r), identity);
+      count += store_has_run(store, identity);
+    }
+  }
+  *there = 2 * count >= find->places * find->each;
+  return STATUS_OK;
+}
+
+/* Goes through the rounds that the store has, to the places of the next round. If there is none, the last round is left
+ * as the next one: the store has all of its runs. */
+static status follow_store(struct find *find, struct error *error) {
+  STORE store = NULL;
+  bool there = false;
+  const status code = store_open_reader(find->limits.store, &store, error);
+  choose_places(find);
+  if (code != STATUS_OK)
+    return code == STATUS_MISSING ? STATUS_OK : code;
+  TRY(has_round(find, store, &there, error));
+  while (there) {
+    const struct find last = *find;
+    TRY(add_round(find, store, error));
+    if (!find->answered)
+      choose_places(find);
+    if (find->answered || find->runs + find->places * find->each > find->most) {
+      *find = last;
+      find->answered = true;
+      return STATUS_OK;
+    }
+    TRY(has_round(find, store, &there, error));
+  }
+  return STATUS_OK;
+}
+
+/* The cost of most runs. Later rounds are where the level is crossed, and a run can cost more there than at the ends:
+ * the store's rounds tell where. Without them the cost is a range, from runs over the whole bracket to runs at the most
+ * expensive of its places. */
 static status print_plan(struct find *find, const struct find_request *request, bool json, struct error *error) {
   CAMPAIGN campaign = NULL;
   struct plan plan;
   const struct plan_options options = {.store_path = find->limits.store, .slots = launch_slots(request->launch.slots)};
-  choose_places(find);
-  find->each = find->most / find->places;
+  TRY(follow_store(find, error));
+  if (!find->answered)
+    find->each = (find->most - find->runs) / find->places;
   TRY(make_campaign(find, &campaign, error));
   TRY(plan_make(campaign, &options, &plan, error));
-  if (!json)
+  if (find->runs == 0 && !find->answered)
+    plan_crowd(&plan, options.slots);
+  if (!json) {
     printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
+    if (find->answered)
+      puts("The store has all of this search; a narrower interval or a larger --max-runs goes on.");
+    else if (find->runs > 0)
+      printf("The store has its first %zu runs; this is the cost of the others, near the crossing.\n", find->runs);
+    else
+      puts("The cost is from runs over the whole bracket to all of them where they take longest.");
+  }
   const status code = plan_show(campaign, &plan, options.slots, json, error);
   plan_clear(&plan);
   return code;

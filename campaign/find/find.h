@@ -8,6 +8,7 @@
 #include "campaign/charts/charts.h"
 #include "campaign/launch/launch.h"
 
+enum { FIND_WIDTHS = 24 };
 enum { FIND_FEWEST_RUNS = CROSSING_FIRST * CROSSING_RUNS, FIND_MOST_RUNS = 5000 };
 
 struct find_request { /* as on the command line; texts may be NULL */
@@ -39,6 +40,11 @@ struct find {
   bool *doubtful;
   struct crossing found;
   struct ask_doubts doubts;
+  struct find_width {
+    size_t runs;
+    double width; /* of the interval after them, a share of the bracket */
+  } width[FIND_WIDTHS];
+  size_t widths;
   bool answered, narrow; /* no more rounds; the interval is as narrow as asked, or there is another answer */
 
   /* The round under way. */
@@ -47,6 +53,10 @@ struct find {
   void (*note)(void *context, const char *text);
   void *note_context;
 };
+
+/* Widest interval of an answer as a share of the bracket, for the interval found. An interval between neighbouring
+ * whole numbers cannot become narrower. */
+double find_widest(const struct find *find);
 
 /* Value of the input at a place of the bracket, as a document can show it (to 1e-4 of the bracket's decade), and back.
  */

@@ -11,6 +11,7 @@
 #include "schemas/text.h"
 #include "schemas/unit.h"
 
+static const double LITTLE = 0.9; /* of a width, after twice the runs: 0.71 is usual */
 enum { BINS = 10, SENTENCE = 2048 };
 
 static const char *show(const struct find *find, double x, char text[FIND_TEXT]) {
@@ -298,6 +299,28 @@ static status tell_resolution(const struct find *find, struct error *error) {
   return STATUS_OK;
 }
 
+/* The runs are used up: how many more an interval of the width asked for needs, and whether the last ones helped. */
+static void write_more(const struct find *find) {
+  const double width = find->found.high - find->found.low;
+  char text[SENTENCE] = "The interval is wider than asked, and the runs are used up: a larger --max-runs goes on.";
+  const struct find_width *before = NULL;
+  for (size_t i = 0; i < find->widths; i++)
+    if (2 * find->width[i].runs <= find->runs)
+      before = &find->width[i];
+  if (find->found.kind == CROSSING_FOUND && width > find_widest(find)) {
+    const size_t needed = crossing_runs_for(find->runs, width, find_widest(find));
+    text_append(text, SENTENCE, " The width asked for needs about %zu runs, if it falls as the root of their number",
+                needed);
+    if (needed > FIND_MOST_RUNS)
+      text_append(text, SENTENCE, " (a search may have %d)", FIND_MOST_RUNS);
+    text_append(text, SENTENCE, ".");
+  }
+  if (find->found.kind == CROSSING_FOUND && before && width > LITTLE * before->width)
+    text_append(text, SENTENCE, " From %zu to %zu runs it became only %.0f %% narrower, so it may take many more.",
+                before->runs, find->runs, fmax(100 * (1 - width / before->width), 0));
+  words_print(stdout, "", "%s", text);
+}
+
 status find_print(const struct find *find, enum table_format format, struct error *error) {
   char text[SENTENCE];
   if (!table_for_people(format))
@@ -305,7 +328,7 @@ status find_print(const struct find *find, enum table_format format, struct erro
   write_sentence(find, text);
   words_print(stdout, "", "%s", text);
   if (!find->narrow)
-    puts("The interval is wider than asked, and the runs are used up: a larger --max-runs goes on.");
+    write_more(find);
   TRY(print_bins(find, error));
   fflush(stdout);
   uncertainty_doubts(&find->doubts, stderr);

@@ -427,6 +427,12 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
   plan->fields_bytes = kept > 0 ? kept * plan->memory_most : 0;
 }
 
+void plan_crowd(struct plan *plan, int slots) {
+  const uint64_t runs = plan->runs_most - plan->runs_there;
+  plan->cpu_s_most = (double)runs * (plan->run_s_most + SLOT_S + MANAGER_S);
+  plan->wall_s_most = wall_time(runs, plan->run_s_most / plan->threads, slots);
+}
+
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
                  struct error *error) {
   *plan = (struct plan){.threads = 1, .run_s_mean = NOTHING, .run_s_most = NOTHING, .disk_bytes = NOTHING};
@@ -519,13 +525,14 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
   progress_duration(plan->wall_s_least, a, sizeof a);
   progress_duration(plan->wall_s_most, b, sizeof b);
   fprintf(out, "time      %s", a);
-  if (plan->runs_most != plan->runs_least)
+  if (plan->wall_s_most > plan->wall_s_least)
     fprintf(out, " to %s", b);
-  progress_duration(plan->cpu_s_most, a, sizeof a);
   fprintf(out, " on %d slot%s", slots, slots == 1 ? "" : "s");
   if (plan->threads > 1)
     fprintf(out, " of %.0f threads", plan->threads);
-  fprintf(out, " (%s of processor time)\n", a);
+  progress_duration(plan->cpu_s_least, a, sizeof a);
+  progress_duration(plan->cpu_s_most, b, sizeof b);
+  fprintf(out, " (%s%s%s of processor time)\n", a, strcmp(a, b) ? " to " : "", strcmp(a, b) ? b : "");
 }
 
 static void print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {

@@ -15,6 +15,14 @@ search=(disc.yaml --level 0.5 --share 50% --within "25 %")
 
 expect 0 "$clast" find "${search[@]}" --plan
 prints "At most 400 runs, 20 at first"; prints "a run"; [ ! -e disc.db ] || fail "a plan stores nothing"
+prints "The cost is from runs over the whole bracket to all of them where they take longest."
+expect 0 "$clast" find "${search[@]}" --plan --json # 1.5 ms of a run are for its process and its row
+python -c "
+import json; p = json.load(open('out'))
+assert p['runs_most'] == 400 and p['run_s_most'] > p['run_s_mean'], p
+for end, run in ('least', 'mean'), ('most', 'most'):
+    assert abs(p['cpu_s_' + end] - 400 * (p['run_s_' + run] + 1.5e-3)) < 1e-9 * p['cpu_s_' + end], p"
+ok "the cost is a range"
 expect 0 "$clast" find "${search[@]}" -j 1 --picture disc.png
 [ -s disc.png ] || fail "no picture"
 head -2 out | paste -sd ' ' | grep -qE '^The share of runs with largest_fraction above 0.5 rises through 0.5 at threshold.strain = [0-9.]+ %( !)? \(95 % interval [0-9.]+ % to [0-9.]+ %\)\.( |$)' ||
@@ -32,6 +40,16 @@ assert f"threshold.strain={at} %" in study and "body.diameter=8 cm" in study, st
 PY
 ok "the study advised is at the crossing"
 runs=$(number disc.db "select count(*) from run")
+expect 0 "$clast" find "${search[@]}" --plan
+prints "The store has all of this search"; prints "(0.0 s of processor time)"
+expect 0 "$clast" find disc.yaml --level 0.5 --share 50% --within 0.0001 --plan --json # the other runs: at the places near the crossing
+python - "$runs" <<'PY'
+import json, re, sqlite3, sys
+p = json.load(open('out'))
+places = [float(v) for v in re.findall(r'([0-9.]+) ?%', p['axes'][0]['values'])]
+assert p['runs_most'] == (400 - int(sys.argv[1])) // len(places) * len(places) and p['runs_there'] == 0, p
+assert len(places) == 4 and 1 < min(places) and max(places) < 6 and max(places) - min(places) < 2, p
+PY
 expect 0 "$clast" status disc.db # its rounds are one row, with a name that can be typed
 grep -q '^ *-  disc find threshold.strain ' out || fail "the rounds are no row of their name"
 expect 0 "$clast" stats disc.db --campaign 'disc find threshold.strain'
@@ -76,7 +94,8 @@ same "$(number killed.db 'select count(*) from run')" "$runs" "runs after a kill
 
 # A narrower interval goes on from these runs; few runs end with a wide one.
 expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.001 --max-runs "$((runs + 8))"
-says "$runs found in the store"; prints "a larger --max-runs goes on"
+says "$runs found in the store"; tr '\n' ' ' <out >line; mv line out
+prints "a larger --max-runs goes on. The width asked for needs about "
 # Other answers.
 expect 0 "$clast" find disc.yaml --level 1
 prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the"
@@ -145,4 +164,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 42
+done_after 46

@@ -188,6 +188,13 @@ static void rounds_grow_by_a_sixth(void **state) {
   NEAR(place[2], 0.3, 0);
 }
 
+static void runs_for_a_width(void **state) {
+  (void)state;
+  assert_int_equal(crossing_runs_for(100, 0.2, 0.1), 400);
+  assert_int_equal(crossing_runs_for(368, 13, 5.5), 2100); /* 2056 */
+  assert_int_equal(crossing_runs_for(40, 0.11, 0.1), 49);  /* 48.4 */
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(means_by_hand),
@@ -198,6 +205,7 @@ int main(void) {
       cmocka_unit_test(runs_without_results),
       cmocka_unit_test(a_place_that_contradicts_is_looked_at),
       cmocka_unit_test(rounds_grow_by_a_sixth),
+      cmocka_unit_test(runs_for_a_width),
   };
   analysis_init();
   return cmocka_run_group_tests_name("crossing", tests, NULL, NULL);
