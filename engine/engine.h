@@ -38,7 +38,8 @@ struct knob {
                                        own setting is also a level */
   double step_power; /* of numbers: value^step_power is the step size; it is smaller at finer levels. 0: no step size;
                         finer levels have larger values */
-  bool pairs;        /* the same seed gives nearly the same run at all levels */
+  bool pairs; /* levels are compared seed by seed: the same seed gives nearly the same run at all of them, or may do
+                 so. A pair of independent runs costs degrees of freedom only */
   const char *meaning;
 };
 

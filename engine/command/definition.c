@@ -212,6 +212,7 @@ static void add_knob(struct definition *d, const struct field *row, int resoluti
                         .group = KNOB_RESOLUTION,
                         .inputs = {{row->path, 1}},
                         .step_power = resolution == LARGER ? -1 : 1,
+                        .pairs = true,
                         .meaning = row->doc};
   const double larger[] = {0.25, 0.5, 1, 2}, smaller[] = {4, 2, 1, 0.5};
   memcpy(knob->factors, resolution == LARGER ? larger : smaller, sizeof larger);

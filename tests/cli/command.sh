@@ -302,6 +302,24 @@ expect 0 "$clast" replay one.db 5 $word
 says "agree to the last bit"
 expect 0 "$clast" converge bundle.yaml $word --quantity strength --max-seeds 8 --within off
 prints "fibres"
+# A program whose seeds scatter alike at all levels: a bias is told seed by seed, as `compare` tells it, so that few seeds do.
+scene twins <<'SH'
+awk -v a="$1" -v s="$2" 'BEGIN { printf "{\"x\": %.17g}", s * 7919 % 101 + (1 + s % 3) / a }'
+SH
+expect 0 "$clast" converge twins.yaml $word --knob a=1,2,4,8 -Q x --seeds 6 --max-seeds 24 --within 1 --store twins.db
+same "$(number twins.db 'select max(n), sum(paired), max(bias_half_width) < 1, min(half_width) > 10 from convergence where n > 0')" \
+  "6,4,1,1" "biases seed by seed"
+# The processor time of a run is that of the program, wherever it is computed.
+scene busy <<'SH'
+python3 -c 'import time
+while time.process_time() < 0.2: pass'
+echo '{"x": 1}'
+SH
+for way in "" --in-process; do
+  rm -f busy.db
+  expect 0 "$clast" run busy-runs.yaml $word $way
+  same "$(number busy.db 'select cpu_time >= 0.2 from run')" 1 "processor time $way"
+done
 # Time that is over in the middle of a round: only the first seed is quick.
 scene slow <<'SH'
 [ "$2" = 1 ] || sleep 1
@@ -351,4 +369,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 129
+done_after 135
