@@ -3,6 +3,7 @@
 #define CLAST_SCHEMAS_CLOCK_H
 
 #include <stdint.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #define CLOCK_MS INT64_C(1000000) /* ns */
@@ -27,6 +28,14 @@ static inline double clock_read_s(clockid_t clock) {
 
 static inline double clock_cpu_s(void) {
   return clock_read_s(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+/* Processor time of this process and of the programs that it has waited for, s. */
+static inline double clock_cpu_with_children_s(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return clock_cpu_s() + (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 /* Seconds as ns, at most 1e18. */

@@ -404,10 +404,10 @@ static int64_t peak_memory(int64_t *floor) {
 static bool run_here(struct serving *s, uint64_t handle, const uint8_t *task, size_t size) {
   struct error error = {0};
   const int64_t start = clock_ns();
-  const double cpu = clock_cpu_s();
+  const double cpu = clock_cpu_with_children_s();
   const struct answer answer = compute(s, task, size, &error);
   struct farm_result head = {.slot = s->slot,
-                             .cpu_s = clock_cpu_s() - cpu,
+                             .cpu_s = clock_cpu_with_children_s() - cpu,
                              .wall_s = 1e-9 * (double)(clock_ns() - start),
                              .peak_memory = peak_memory(&s->memory_floor)};
   const bool written = append_answer(&s->out, handle, &head, &answer, s->setup->options.memory_limit > 0);

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 #include "campaign/converge/ladder.h"
 #include "campaign/scheduler/point.h"
@@ -30,22 +29,14 @@ static void mark(struct plan_trial *run) {
   run->mark_progress[run->marks++] = run->progress;
 }
 
-/* Processor time of this process and of programs that it ran and that have ended, s. */
-static double spent_s(void) {
-  struct rusage usage;
-  getrusage(RUSAGE_CHILDREN, &usage);
-  return clock_cpu_s() + (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-         1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
 static status step(const struct engine_kind *kind, void *state, double until, struct plan_trial *run,
                    struct error *error) {
   uint64_t block = 1;
   status code = STATUS_OK;
-  while (code == STATUS_OK && !run->finished && spent_s() < until) {
-    const double from = spent_s();
+  while (code == STATUS_OK && !run->finished && clock_cpu_with_children_s() < until) {
+    const double from = clock_cpu_with_children_s();
     code = kind->step(state, block, &run->finished, error);
-    const double took = spent_s() - from;
+    const double took = clock_cpu_with_children_s() - from;
     run->step_s += took;
     run->steps += (double)block;
     run->progress = kind->progress ? kind->progress(state) : (double)NAN;
@@ -62,19 +53,19 @@ status plan_try(const struct scene *scene, uint64_t seed, double seconds, struct
   OWNED void *result = NULL;
   OWNED struct fragment *list = NULL;
   struct outcome outcome;
-  const double begin = spent_s();
+  const double begin = clock_cpu_with_children_s();
   *run = (struct plan_trial){.expected = kind->steps ? kind->steps(scene->inputs) : (double)NAN};
   SCENE alone = scene_copy(scene); /* one thread: the processor time of several includes their waiting */
   if (kind->threads)
     *kind->threads(alone->inputs) = 1;
   TRY(kind->prepare(alone->inputs, seed, &state, error));
-  run->prepare_s = spent_s() - begin;
+  run->prepare_s = clock_cpu_with_children_s() - begin;
   status code = step(kind, state, begin + seconds, run, error);
   if (code == STATUS_OK) {
-    const double stepped = spent_s();
+    const double stepped = clock_cpu_with_children_s();
     result = memory_small(1, kind->results->size);
     code = kind->finish(state, &outcome, result, &list, &run->fragments, error);
-    run->finish_s = spent_s() - stepped;
+    run->finish_s = clock_cpu_with_children_s() - stepped;
   }
   kind->free(state);
   return code;
@@ -312,7 +303,7 @@ double plan_mean(const struct plan_samples *samples, double mean_work) {
 /* Times whole runs of the sampled points, or coarse ones if a setting is given, until the time is used up. */
 static void time_points(const struct campaign *campaign, const struct looking *looking, const char *setting,
                         double until, struct plan_samples *samples) {
-  for (size_t i = 0; i < looking->sampled && spent_s() < until; i++) {
+  for (size_t i = 0; i < looking->sampled && clock_cpu_with_children_s() < until; i++) {
     struct error ignored;
     struct plan_trial run = {0};
     const struct scene *point = looking->sample[i];
@@ -320,7 +311,7 @@ static void time_points(const struct campaign *campaign, const struct looking *l
     if (setting && !coarse)
       continue;
     const uint64_t seed = campaign_seed(campaign, point, 0);
-    const status code = plan_try(coarse ? coarse : point, seed, until - spent_s(), &run, &ignored);
+    const status code = plan_try(coarse ? coarse : point, seed, until - clock_cpu_with_children_s(), &run, &ignored);
     scene_free(coarse);
     if (code != STATUS_OK || !run.finished)
       continue;
@@ -356,7 +347,7 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
                       size_t *fragments, struct error *error) {
   const struct scene *scene = looking->costliest;
   const uint64_t seed = campaign_seed(campaign, scene, 0);
-  const double begin = spent_s();
+  const double begin = clock_cpu_with_children_s();
   char setting[64] = "";
   struct plan_trial run = {0};
   TRY(plan_try(scene, seed, seconds / 2, &run, error));
