@@ -104,6 +104,7 @@ struct engine_kind {
   const struct condition *conditions; /* under which results are valid (engine/condition.h); NULL: none are known */
   /* Path of the result that such a scene is made for ("strength"). NULL, also as a function: OUTCOME_DEFAULT. */
   const char *(*headline)(const void *inputs);
+  const char *single; /* what a fragment of count 1 is called ("of one element"); NULL: "of one grain or particle" */
   /* What is modelled, memory, expected cost: text for `clast explain scene` and `plan`. `all`: also why, with sources.
    * malloc'd. */
   char *(*describe)(const void *inputs, bool all);

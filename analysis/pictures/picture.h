@@ -177,9 +177,10 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
 /* The same as text for a terminal (text_plot.c). Writes one row per bin:
  *     lower edge   count   F(m)   +-95% in %      ├──●──┤  ·
  * the point (○ in bins that begin below complete_mass), its 95 % interval over runs, and (·) the series' first fit.
- * columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. value: name of its column, such
- * as "F(m)". It writes no colour, and nothing when there is no fragment. */
-void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, const char *value,
+ * columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. axis: letter of the lower edges
+ * ("m"); value: name of its column, such as "F(m)". Bins without a count leave its column empty. It writes no colour,
+ * and nothing when there is no fragment. */
+void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *axis, const char *unit, const char *value,
                         const struct pooled_form *form, const struct picture_series *series);
 
 /* Quantities along a line (such as depth below a crater), in panels one above the other. A value that is not finite

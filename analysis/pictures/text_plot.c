@@ -63,8 +63,10 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   }
   line[place(scale, log10(bin->value))] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
 
-  fprintf(out, "%10.3g %7lld %11.3g", bin->lower, (long long)bin->count, bin->value);
-  char percent[24] = "";
+  char percent[24] = "", count[24] = "";
+  if (bin->count)
+    snprintf(count, sizeof count, "%lld", (long long)bin->count);
+  fprintf(out, "%10.3g %7s %11.3g", bin->lower, count, bin->value);
   text_append_fixed(percent, sizeof percent, 100 * bin->half_width / bin->value, 0);
   if (isfinite(bin->half_width))
     fprintf(out, " %4s%%  ", percent);
@@ -79,9 +81,10 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
 }
 
 /* Writes the decades above the grid lines, as many as fit. */
-static void heading(FILE *out, const struct scale *scale, bool sizes, const char *mass_unit, const char *value) {
+static void heading(FILE *out, const struct scale *scale, bool counted, const char *axis, const char *axis_unit,
+                    const char *value) {
   char unit[32], line[MOST_PLOT + 16];
-  snprintf(unit, sizeof unit, "%c [%s]", sizes ? 'L' : 'm', mass_unit);
+  snprintf(unit, sizeof unit, "%s [%s]", axis, axis_unit);
   memset(line, ' ', sizeof line);
   int free_from = 0;
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++) {
@@ -98,7 +101,7 @@ static void heading(FILE *out, const struct scale *scale, bool sizes, const char
   while (end > 0 && line[end - 1] == ' ')
     end--;
   line[end] = 0;
-  fprintf(out, "%10s %7s %11s %5s  %s\n", unit, "count", value, "+-95%", line);
+  fprintf(out, "%10s %7s %11s %5s  %s\n", unit, counted ? "count" : "", value, "+-95%", line);
 }
 
 /* Without unicode, beta and plus-minus are spelt out, and other characters beyond ASCII are left out. */
@@ -117,7 +120,7 @@ static void write_label(FILE *out, const char *label, bool unicode) {
   }
 }
 
-void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, const char *value,
+void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *axis, const char *unit, const char *value,
                         const struct pooled_form *form, const struct picture_series *series) {
   struct scale scale = {HUGE_VAL, -HUGE_VAL, 0};
   for (size_t b = 0; b < series->count; b++) {
@@ -133,7 +136,7 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, 
   if (columns < LEAST_COLUMNS)
     columns = LEAST_COLUMNS;
   scale.columns = columns - FRONT < MOST_PLOT ? columns - FRONT : MOST_PLOT;
-  heading(out, &scale, form->size.density > 0, unit, value);
+  heading(out, &scale, series->bins[0].count > 0, axis, unit, value);
   for (size_t b = 0; b < series->count; b++)
     if (series->bins[b].value > 0)
       row(out, &scale, unicode, form, &series->bins[b], series);

@@ -236,7 +236,8 @@ static void print_plots(const struct curves *curves, bool ascii) {
     const struct picture_series series = series_of(curve);
     const char *per_mass = curve->form.size.dimensions == 2 ? "F(m) [m/kg]" : "F(m) [1/kg]";
     printf("%s%s\n", i ? "\n" : "", curve->label);
-    text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),
+    text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "L" : "m",
+                       sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),
                        curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L) [1/m]" : per_mass),
                        &curve->form, &series);
     print_rivals(&curve->rivals, ask_pool_mass_unit(curve->form.size.dimensions));

@@ -1,5 +1,6 @@
 /* `clast scenes [NAME]`: the built-in scenes, or one as a document to start from. */
 #include "campaign/commands/commands.h"
+#include "schemas/file.h"
 
 static status print_document(const char *name, struct error *error) {
   const char *text = scene_builtin_text(name);
@@ -9,7 +10,12 @@ static status print_document(const char *name, struct error *error) {
   }
   SCENE scene = NULL;
   TRY(scene_load(name, NULL, &scene, error)); /* names the nearest scene */
-  return status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", name);
+  if (file_name_is_document(name))
+    return status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", name);
+  return status_fail(error, STATUS_USAGE,
+                     "%s is a scene with named settings, which stand in its document: `clast scenes %.*s`, `clast "
+                     "explain %s`",
+                     name, (int)strcspn(name, "@"), name, name);
 }
 
 static status run(const struct command_line *line, struct error *error) {

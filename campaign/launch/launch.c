@@ -124,7 +124,8 @@ enum { MANY_POINTS = 64 }; /* above this number the table at the end is printed 
 static void print_summary(const struct driver_summary *summary, const char *store, const char *quantity, double wall_s,
                           status code) {
   launch_tell_runs(store, summary->runs_done, summary->runs_reused, summary->cpu_s, wall_s);
-  fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " complete", summary->points_done, summary->points);
+  fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " %s", summary->points_done, summary->points,
+          summary->runs_failed ? "ended" : "complete");
   if (summary->points_interval_met || summary->points_cap_reached)
     fprintf(stderr, ": %" PRIu64 " met seeds.until, %" PRIu64 " ended at seeds.max before that",
             summary->points_interval_met, summary->points_cap_reached);

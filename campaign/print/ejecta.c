@@ -118,7 +118,7 @@ status print_ejecta(struct store *store, const struct ask_pool_choice *choice, c
     TRY(draw(store, curves, drawing->page, error));
   for (size_t i = 0; drawing->text && i < curves->count; i++) {
     printf("%s%s\n", i ? "\n" : "", curves->series[i].label);
-    text_plot_spectrum(stdout, COLUMNS, !drawing->ascii, "m/s", "mass > v", &above, &curves->series[i]);
+    text_plot_spectrum(stdout, COLUMNS, !drawing->ascii, "v", "m/s", "mass > v", &above, &curves->series[i]);
   }
   if (drawing->text || table_for_people(format))
     uncertainty_doubts(&curves->doubts, stderr);

@@ -179,8 +179,9 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
     answer_result(scene->kind, result, row);
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
-  snprintf(says, sizeof says, "%lld of one grain or particle; the spectrum is complete from %.3g %s on",
-           (long long)o->single_count, o->complete_mass, ask_pool_mass_unit(scene->kind->dimensions));
+  snprintf(says, sizeof says, "%lld %s; the spectrum is complete from %.3g %s on", (long long)o->single_count,
+           scene->kind->single ? scene->kind->single : "of one grain or particle", o->complete_mass,
+           ask_pool_mass_unit(scene->kind->dimensions));
   answer("fragments", (double)o->fragment_count, condition_mark(conditions, o->warnings, OUTCOME_NAME(fragment_count)),
          says);
   const struct estimate *fit = NULL;

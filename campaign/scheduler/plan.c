@@ -445,8 +445,9 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK) {
     plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs, options->all) : NULL;
-    design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, plan->costliest,
-                           sizeof plan->costliest);
+    if (scene->kind->work) /* else all points count as one work */
+      design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, plan->costliest,
+                             sizeof plan->costliest);
     add_up(campaign, options, &looking, fragments, plan);
   }
   for (size_t i = 0; i < looking.sampled; i++)
@@ -546,8 +547,11 @@ static void print(const struct campaign *campaign, const struct plan *plan, int 
            (unsigned long long)plan->runs_there);
   words_print(out, "runs      ", "%llu%s, %s", (unsigned long long)plan->runs_least, until, a);
   print_times(plan, slots, out);
-  fprintf(out, "memory    %s per run, %s on all slots\n", bytes(plan->memory_most, a, sizeof a),
-          bytes(plan->memory_most * slots, b, sizeof b));
+  if (plan->memory_most > 0)
+    fprintf(out, "memory    %s per run, %s on all slots\n", bytes(plan->memory_most, a, sizeof a),
+            bytes(plan->memory_most * slots, b, sizeof b));
+  else
+    fputs("memory    not known: the scene sets no limits: memory for its program\n", out);
   fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), plan->store);
   if (campaign->keep != CAMPAIGN_KEEP_NONE)
     fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
@@ -611,7 +615,7 @@ char *plan_print_json(const struct campaign *campaign, const struct plan *plan, 
   number(out, "cpu_s_most", plan->cpu_s_most);
   number(out, "wall_s_least", plan->wall_s_least);
   number(out, "wall_s_most", plan->wall_s_most);
-  number(out, "memory_most_bytes", plan->memory_most);
+  number(out, "memory_most_bytes", plan->memory_most > 0 ? plan->memory_most : (double)NAN);
   number(out, "disk_bytes", plan->disk_bytes);
   number(out, "fields_bytes", plan->fields_bytes);
   if (plan->alternatives)

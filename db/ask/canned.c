@@ -44,8 +44,9 @@ static const struct query_canned queries[] = {
     {"failures", "Runs without a usable result, and attempts that failed, with what they said.",
      "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM run WHERE counts = 0 "
      "AND surplus = 0\nUNION ALL\n"
-     "SELECT point_id, replicate, seed, reason || iif(signal, ' (signal ' || signal || ')', iif(exit_code, ' (exit ' "
-     "|| exit_code || ')', '')), number, wall_time, host, message FROM attempt ORDER BY point_id, replicate, attempt",
+     "SELECT point_id, replicate, seed, reason || iif(signal, ' (signal ' || signal || ')', ''), number, wall_time, "
+     "host, "
+     "message FROM attempt ORDER BY point_id, replicate, attempt",
      ""},
     {"censored", "Runs that ended at their time: fragments may still have been breaking.",
      "SELECT point_id, run_id, replicate, seed, time, " OUTCOME_DEFAULT " FROM run WHERE state = 'end-time' ORDER BY "

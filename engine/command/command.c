@@ -285,7 +285,10 @@ static char *describe(const void *inputs, bool all) {
   for (size_t i = 0; i < d->result_count; i++)
     fprintf(out, "  %s (%s): %s\n", d->result_rows[i].path, d->result[i].unit, d->result[i].doc);
   if (d->settings.fragments.name[0] || d->settings.fragments.file[0])
-    fprintf(out, "  masses of fragments (%s)\n", d->settings.fragments.unit);
+    fprintf(out, "  masses of fragments (%s)%s\n", d->settings.fragments.unit,
+            field_is_off(d->settings.fragments.element_mass)
+                ? "; the lightest of each run is its element, where exponents begin: element_mass would give it"
+                : "");
   text_make_plain(text_close_small(out, &text),
                   "\n\t"); /* a scene from a stranger must not move the cursor over what it runs */
   return text;

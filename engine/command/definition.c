@@ -640,6 +640,9 @@ static void make_kind(struct definition *d, const struct engine_kind *base) {
   d->kind.definition = d->stored;
   d->kind.task = d->whole;
   d->kind.knobs = d->knobs;
+  d->kind.single = field_is_off(d->settings.fragments.element_mass)
+                       ? "as light as the lightest, as no `fragments: element_mass` is given"
+                       : "of one element";
   d->kind.same_bits = d->settings.same_bits;
   struct knob *last = d->knobs;
   while (last->name)

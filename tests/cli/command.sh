@@ -45,7 +45,11 @@ done
 expect 64 "$clast" simulate mark.yaml
 says "give --allow-commands if you trust it"; says "the program sh"; one_error
 expect 0 "$clast" plan mark-runs.yaml
-prints "not known without a trial run"
+prints "not known without a trial run"; prints "memory    not known"
+expect 0 "$clast" plan vary.yaml
+! grep -q "most expensive" out || fail "the most expensive point of a program that was not timed"
+expect 0 "$clast" plan vary.yaml --json
+grep -q '"memory_most_bytes": null' out || fail "0 B of memory"
 expect 0 "$clast" explain mark.yaml
 prints "runs the program: sh mark.sh {{a}} {{seed}}"
 [ ! -e touched ] || fail "a program was run without the user's word"
@@ -114,6 +118,9 @@ for element in "element_mass: 0.1 kg, " ""; do # without it: the lightest fragme
 awk 'BEGIN { for (i = 0.5; i < 3000; i++) m = m sprintf(", %.17g", 0.1 * int(0.5 + 1500 / i)); print "{\"x\": 1, \"m\": [" substr(m, 2) "]}" }'
 SH
   rm -f grains.db
+  expect 0 "$clast" simulate grains.yaml $word
+  ! grep -q "grain or particle" out || fail "a program without particles has particles"
+  [ -n "$element" ] && prints "of one element" || prints "element_mass"
   expect 0 "$clast" run grains-runs.yaml $word
   number grains.db "select abs(complete_mass - 0.55) < 1e-12 and abs(beta - 2) < 0.03 from run natural join estimate where method = 'masses' and window = 'from_5'" >right
   same "$(cat right)" 1 "window and exponent of whole grains"
@@ -172,8 +179,11 @@ bad() {
   says "$words"
   one_error
   nothing_left "$name"
-  expect 1 "$clast" run "$name-runs.yaml" $word --quiet
+  expect 1 "$clast" run "$name-runs.yaml" $word
+  says "points: 1 of 1 ended"
   same "$(number "$name.db" 'select reason from attempt')" "$reason" "$name"
+  "$clast" query "$name.db" --named failures >out
+  ! grep -q "(exit 1)" out || fail "an exit code of clast is told as the program's"
   nothing_left "$name"
 }
 bad hang time_limit "did not end within 1 s" 'limits: {time: 1 s}' <<'SH'
@@ -369,4 +379,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 135
+done_after 139

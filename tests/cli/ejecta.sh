@@ -35,7 +35,8 @@ ok "sums of the table"
 expect 0 "$clast" spectrum shots.db --ejecta --by impact.speed --csv
 [ "$(grep -c . out)" -gt 5 ] || fail "no pooled rows"
 expect 0 "$clast" spectrum shots.db --ejecta --point 2 --plot --ascii
-prints "mass > v"
+prints "mass > v"; prints "v [m/s]"
+! grep -q "count" out || fail "masses over speeds have no count"
 expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg
 grep -q "speed v (m/s)" ejecta.svg || fail "no axis of speeds"
 expect 64 "$clast" spectrum shots.db --ejecta --cumulative

@@ -16,7 +16,7 @@ static char *plot(int columns, bool unicode, const struct picture_series *series
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
-  text_plot_spectrum(out, columns, unicode, "kg/m", "F(m)", &(struct pooled_form){0}, series);
+  text_plot_spectrum(out, columns, unicode, "m", "kg/m", "F(m)", &(struct pooled_form){0}, series);
   fclose(out);
   return text;
 }
