@@ -2,10 +2,21 @@
 #include "campaign/commands/commands.h"
 #include "campaign/converge/study.h"
 
+/* The knobs of all engines, or those of a scene or a campaign. */
+static status list_knobs(const struct study_request *request, const struct command_line *line, struct error *error) {
+  SCENE scene = NULL;
+  CAMPAIGN campaign = NULL;
+  struct error ignored;
+  if (line->count && campaign_load(line->arguments[0], &campaign, &ignored))
+    TRY(option_load_scene(line->arguments[0], &request->set, &scene, error));
+  const struct scene *of = campaign ? campaign->scene : scene;
+  return study_print_knobs(of ? of->kind : NULL, line->format, error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct study_request *request = line->options;
   if (request->list)
-    return study_print_knobs(line->format, error);
+    return list_knobs(request, line, error);
   if (line->count == 0)
     return status_fail(error, STATUS_USAGE, "name a scene or a campaign, or give --list");
   return study_launch(request, line, error);

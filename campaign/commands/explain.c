@@ -376,9 +376,11 @@ static status explain_path_list(enum table_format format, struct error *error) {
 
 /* ---- scenes ---- */
 
-/* The active inputs; unless `all`, those that the scene gives. */
-static status print_inputs(const struct scene *scene, bool all, struct error *error) {
+/* The active inputs; unless `all`, those that the scene gives. A scene that names its inputs itself is judged by them
+ * before its program is allowed. */
+static status print_inputs(const struct scene *scene, bool every, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
+  const bool all = every || scene->kind->definition;
   TABLE table = table_new(TABLE_ALL, stdout);
   table_columns(table, (const char *const[]){"input", "value", "meaning", NULL});
   size_t others = 0;
@@ -401,6 +403,8 @@ static status print_inputs(const struct scene *scene, bool all, struct error *er
   TRY(table_end(table, error));
   if (others)
     printf("%zu other inputs have defaults; --all lists them, and says what is modelled and why\n", others);
+  else if (!every && all)
+    puts("--all shows the files, too");
   return STATUS_OK;
 }
 

@@ -14,17 +14,19 @@
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
-status study_print_knobs(enum table_format format, struct error *error) {
+status study_print_knobs(const struct engine_kind *kind, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "knob", "group", "input", "meaning", NULL});
-  for (size_t i = 0; i < engine_count(); i++)
-    for (const struct knob *knob = engine_at(i)->knobs; knob && knob->name; knob++) {
-      table_text(table, engine_at(i)->name);
+  for (size_t i = 0; i < (kind ? 1 : engine_count()); i++) {
+    const struct engine_kind *of = kind ? kind : engine_at(i);
+    for (const struct knob *knob = of->knobs; knob && knob->name; knob++) {
+      table_text(table, of->name);
       table_text(table, knob->name);
       table_text(table, engine_knob_groups[knob->group]);
       table_text(table, knob->inputs[0].path ? knob->inputs[0].path : "");
       table_text(table, knob->meaning);
     }
+  }
   return table_end(table, error);
 }
 

@@ -848,19 +848,26 @@ static status print_sobol(const struct reading *r, enum table_format format, str
   table_doubt_columns(table);
   for (size_t i = 0; i <= n; i++) {
     table_text(table, i < n ? name_of(r, i, format) : "seed");
-    interval(table, &index[i].first, &r->cells.doubts);
+    struct sample_interval first = index[i].first;
+    if (table_for_people(format) && i == n && isnan(first.half_width))
+      first.estimate = NAN; /* noise of two seeds, often below 0 */
+    interval(table, &first, &r->cells.doubts);
     interval(table, &index[i].total, &r->cells.doubts);
     table_doubt_cells(table, &r->cells.doubts);
   }
   if (table_for_people(format))
-    fprintf(
-        stderr,
+    words_print(
+        stderr, "",
         "clast: Sobol indices, shares of the variance, of %zu blocks with %zu %s. first: of the input alone; total: "
-        "with what it does together with others\n",
+        "with what it does together with others%s",
         r->whole, r->table.seeds,
         r->table.seeds == 1   ? "seed: a total would hold all the scatter of the runs; give the campaign several seeds"
         : r->table.same_seeds ? "seeds, the same at all points"
-                              : "seeds, different ones at each point");
+                              : "seeds, different ones at each point",
+        r->table.seeds == 2 && r->table.same_seeds
+            ? ". Two seeds are two values of one more input: they make wide intervals, and tell no first order of the "
+              "seed"
+            : "");
   enum { ENOUGH = 64 }; /* measured: unit/test_sensitivity.c, coverage */
   if (r->whole < ENOUGH)
     words_print(stderr, "",

@@ -11,6 +11,7 @@
 
 #include "engine/command/child.h"
 #include "engine/command/definition.h"
+#include "engine/condition.h"
 #include "schemas/limits.h"
 #include "schemas/memory.h"
 
@@ -285,10 +286,7 @@ static char *describe(const void *inputs, bool all) {
   for (size_t i = 0; i < d->result_count; i++)
     fprintf(out, "  %s (%s): %s\n", d->result_rows[i].path, d->result[i].unit, d->result[i].doc);
   if (d->settings.fragments.name[0] || d->settings.fragments.file[0])
-    fprintf(out, "  masses of fragments (%s)%s\n", d->settings.fragments.unit,
-            field_is_off(d->settings.fragments.element_mass)
-                ? "; the lightest of each run is its element, where exponents begin: element_mass would give it"
-                : "");
+    fprintf(out, "  masses of fragments (%s)\n", d->settings.fragments.unit);
   text_make_plain(text_close_small(out, &text),
                   "\n\t"); /* a scene from a stranger must not move the cursor over what it runs */
   return text;
@@ -308,6 +306,33 @@ static const struct engine_kind *of_task(const char *text, size_t size, struct e
   return definition_read_task(text, size, &command_engine, error);
 }
 
+/* ---- what the inputs alone tell ---- */
+
+static double seedless(const void *inputs) {
+  const struct definition *d = NULL;
+  return !definition_of(inputs, &d, NULL) && !d->takes_seed;
+}
+
+static double elementless(const void *inputs) {
+  const struct definition *d = NULL;
+  return !definition_of(inputs, &d, NULL) && field_is_off(d->settings.fragments.element_mass) &&
+         (d->settings.fragments.name[0] || d->settings.fragments.file[0]);
+}
+
+static const struct condition conditions[] = {
+    CONDITION("seedless", .fact = "all seeds are the same run, as the program gets neither {{seed}} nor {{small_seed}}",
+              .doubt = "intervals over seeds are of equal runs", .reason = "a program has no other word of the seed",
+              .remedy = "give it one of them, or take one seed for each point", .results = "", .before = seedless),
+    CONDITION("elementless",
+              .fact =
+                  "the lightest fragment of each run counts as its element, as fragments: element_mass is not given",
+              .doubt = "the windows of exponents hang on one fragment of each run",
+              .reason = "a program tells no smallest piece",
+              .remedy = "give the mass of a grid cell, of a sieve's opening, or the least mass that the model means",
+              .results = "", .before = elementless),
+    {.word = NULL},
+};
+
 static const struct field_table no_results = {.name = "command result",
                                               .doc = "The results that a scene names.",
                                               .size = sizeof(double)};
@@ -324,6 +349,7 @@ const struct engine_kind command_engine = {
     .of_task = of_task,
     .sections = definition_sections,
     .check = check,
+    .conditions = conditions,
     .ready = ready,
     .headline = headline,
     .describe = describe,

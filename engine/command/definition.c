@@ -321,7 +321,9 @@ static const struct field *row_of(const struct definition *d, const char *name) 
 static void check_places(struct reading *r, document_node *node, const char *path, const char *text) {
   char name[NAME];
   for (const char *at = text; r->good && (at = next_place(at, name)); at++)
-    if (strcmp(name, "seed") != 0 && strcmp(name, "small_seed") != 0 && !row_of(r->d, name)) {
+    if (strcmp(name, "seed") == 0 || strcmp(name, "small_seed") == 0) {
+      r->d->takes_seed = true;
+    } else if (!row_of(r->d, name)) {
       document_report(node, path, "{{%s}} is no input of the command; known are its inputs, seed and small_seed", name);
       r->good = false;
     }

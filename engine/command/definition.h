@@ -58,6 +58,7 @@ struct definition {
   char *stored; /* the section as JSON for stores: without the place. One text has one definition */
   char *whole;  /* the same with the place, for workers */
   char digest[33];
+  bool takes_seed; /* a word or a template has {{seed}} or {{small_seed}} */
   struct definition *next;
 };
 

@@ -124,6 +124,18 @@ static document_node *at_path(document_node *node, const char *path) {
   return node;
 }
 
+static status no_key(struct reading *r, size_t i, const char *file, document_node *root) {
+  char there[256] = "";
+  for (size_t k = 0; k < document_count(root); k++) {
+    const char *name = NULL;
+    document_item(root, k, &name);
+    text_append(there, sizeof there, "%s%.60s", k ? ", " : "", name);
+  }
+  text_make_plain(there, "");
+  return status_fail(r->error, STATUS_CONTENT, "%.100s has no key `%.100s` for the result %.60s; its keys: %s", file,
+                     r->d->result[i].name, r->d->result_rows[i].path, there);
+}
+
 static status json_results(struct reading *r, const char *file, document_node *root) {
   document_node *trouble = document_key(root, "error");
   const char *words = trouble ? document_scalar(trouble) : NULL;
@@ -132,8 +144,7 @@ static status json_results(struct reading *r, const char *file, document_node *r
   for (size_t i = 0; i < r->d->result_count; i++) {
     document_node *node = at_path(root, r->d->result[i].name);
     if (!node)
-      return status_fail(r->error, STATUS_CONTENT, "%.100s has no key `%.100s` for the result %.60s", file,
-                         r->d->result[i].name, r->d->result_rows[i].path);
+      return no_key(r, i, file, root);
     TRY(take_result(r, i, file, 0, document_scalar(node)));
   }
   return STATUS_OK;
@@ -152,7 +163,14 @@ static status json_masses(struct reading *r, const char *file, document_node *ro
 static status read_json(struct reading *r, const char *file, const char *text, size_t size, bool results, bool masses) {
   DOCUMENT document = NULL;
   struct error why;
+  char begins[40];
+  const char *from = text + strspn(text, " \t\r\n");
   const status parsed = document_parse(file, text, size, &document, &why);
+  if (parsed == STATUS_CONTENT && *from != '{') { /* the reader of YAML expects other words */
+    snprintf(begins, sizeof begins, "%.*s", (int)strcspn(from, "\n"), from);
+    text_make_plain(begins, "");
+    return status_fail(r->error, parsed, "%.100s is no JSON: it begins with '%s', not with {", file, begins);
+  }
   if (parsed)
     return status_fail(r->error, parsed, "%.100s is no JSON: %.500s", file, why.message);
   document_node *root = document_root(document);

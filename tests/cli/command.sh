@@ -51,7 +51,7 @@ expect 0 "$clast" plan vary.yaml
 expect 0 "$clast" plan vary.yaml --json
 grep -q '"memory_most_bytes": null' out || fail "0 B of memory"
 expect 0 "$clast" explain mark.yaml
-prints "runs the program: sh mark.sh {{a}} {{seed}}"
+prints "runs the program: sh mark.sh {{a}} {{seed}}"; prints "A number"
 [ ! -e touched ] || fail "a program was run without the user's word"
 expect 0 "$clast" simulate mark.yaml $word
 [ -e touched ] || fail "the program was not run with the user's word"
@@ -62,6 +62,22 @@ expect 0 "$clast" report mark.db
 expect 0 "$clast" merge mark2.db mark.db
 expect 0 "$clast" check mark2.db
 [ ! -e touched ] || fail "a store ran a program without the user's word"
+
+expect 65 "$clast" plan mark.yaml
+says "mark.yaml is a scene, not a campaign"; one_error
+expect 0 "$clast" converge mark-runs.yaml --list
+prints "settings"
+expect 0 "$clast" converge mark.yaml --list --csv
+same "$(cut -d, -f2 out | tr '\n' ' ')" "knob a settings " "knobs of the scene alone"
+
+# ---- a program without the seed, and one without an element, say so before a run ----
+expect 0 "$clast" run mark-runs.yaml $word
+! grep -q "warning" err || fail "a program with its seed is warned of"
+sed 's/, "{{seed}}"//; s/^  results:/  fragments: {name: m}\n&/' mark.yaml >deaf.yaml
+sed 's/mark/deaf/' mark-runs.yaml >deaf-runs.yaml
+expect 0 "$clast" plan deaf-runs.yaml
+prints "all seeds are the same run"; prints "element_mass is not given"
+rm -f touched
 
 # ---- scenes that are wrong ----
 sed 's/  version: .*//' mark.yaml >wrong.yaml
@@ -198,13 +214,16 @@ bad code exit "its last words: 'no licence'" <<'SH'
 echo no licence >&2
 exit 7
 SH
+bad hello exit "is no JSON: it begins with 'hello world'" <<'SH'
+echo hello world
+SH
 bad garbage exit "is no JSON" <<'SH'
 head -c 3000 /dev/urandom
 SH
 bad prose exit "expected a number for x, got 'about two'" <<'SH'
 echo '{"x": "about two"}'
 SH
-bad keyless exit "has no key \`x\`" <<'SH'
+bad keyless exit "has no key \`x\` for the result x; its keys: y" <<'SH'
 echo '{"y": 2}'
 SH
 bad columns exit "has no column \`x\`" 'output: out.csv' <<'SH'
@@ -379,4 +398,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 139
+done_after 148

@@ -56,6 +56,9 @@ db.execute('UPDATE point_total SET runs = 0 WHERE point_id = 3')
 db.commit()"
 expect 0 "$clast" sensitivity less.db ask.yaml
 says "1 of 4 blocks lack a finished run"
+# Two seeds have no interval of their first order, which is then noise.
+says "Two seeds are two values of one more input"
+same "$(awk '$1 == "seed" { print $2 }' out)" - "first order of two seeds"
 
 expect 0 "$clast" sensitivity sweep.yaml morris.yaml --design morris --blocks 4
 same "$(grep -c . morris.csv)" 13 "lines of the trajectories"
@@ -135,4 +138,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 35
+done_after 36

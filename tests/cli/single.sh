@@ -24,6 +24,8 @@ expect 66 "$clast" scenes disc-explosoin
 says "disc-explosion"
 expect 64 "$clast" scenes basalt-sphere@draft
 says "clast scenes basalt-sphere"; ! grep -q "is a file" err || fail "a scene with settings is called a file"
+expect 0 "$clast" explain beta
+prints "ejecta.momentum_enhancement"
 expect 0 "$clast" explain threshold.strain
 prints "default"
 expect 0 "$clast" explain contact
@@ -145,4 +147,4 @@ expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
 says "particles, not 3000"
-done_after $((47 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((48 + 3 * $(echo "$scenes" | wc -w)))
