@@ -44,6 +44,7 @@ struct study {
   double centre, width;            /* of the control: t = (x - centre)/width */
   double longest;                  /* ln L of the largest size */
   size_t terms;                    /* of the polynomials */
+  double regular;                  /* part of S, of the last slope that was fitted; 0: none */
 };
 
 struct curve { /* of ln r: a polynomial in (t - at) (L/longest)^power */
@@ -365,7 +366,7 @@ static double fit_ratio(const struct study *s, size_t from, struct curve *curve)
 }
 
 /* Slope of a logarithm against ln L at equal z. NaN: none. */
-static double fit_slope(const struct study *s, size_t from, const struct curve *curve, int which) {
+static double fit_slope(struct study *s, size_t from, const struct curve *curve, int which) {
   const bool regular = which != ORDER && s->levels >= REGULAR_SIZES;
   const size_t n = s->terms + 1 + regular;
   double matrix[MOST * MOST] = {0}, side[MOST] = {0}, solution[MOST];
@@ -380,14 +381,17 @@ static double fit_slope(const struct study *s, size_t from, const struct curve *
       row[n - 1] = exp(-cell->y[SECOND]);
     add_row(n, row, cell->y[which], cell->runs, matrix, side);
   }
+  s->regular = 0;
   if (!covariance_factor(n, matrix))
     return NAN;
   covariance_solve(n, matrix, side, solution);
+  if (regular)
+    s->regular = solution[n - 1];
   return solution[0];
 }
 
 /* All values of the sizes from.. at a curve of ln r. */
-static void tell_values(const struct study *s, size_t from, const struct curve *curve, double value[SCALING_VALUES]) {
+static void tell_values(struct study *s, size_t from, const struct curve *curve, double value[SCALING_VALUES]) {
   value[SCALING_CRITICAL] = s->centre + s->width * curve->at;
   value[SCALING_NU] = 1 / curve->power;
   value[SCALING_BETA] = -fit_slope(s, from, curve, ORDER);
@@ -397,7 +401,7 @@ static void tell_values(const struct study *s, size_t from, const struct curve *
 }
 
 /* Fits the sizes from.., beginning at *curve, where the fit leaves its result. */
-static void fit_all(const struct study *s, size_t from, struct curve *curve, double value[SCALING_VALUES]) {
+static void fit_all(struct study *s, size_t from, struct curve *curve, double value[SCALING_VALUES]) {
   for (int v = 0; v < SCALING_VALUES; v++)
     value[v] = NAN;
   if (!isnan(fit_ratio(s, from, curve)))
@@ -428,8 +432,9 @@ struct scaled {
 
 static struct scaled scale(const struct study *s, const struct curve *curve, const struct cell *cell, int which,
                            double slope) {
-  const double y = exp(cell->y[which] - slope * (log(s->size[cell->level]) - s->longest));
-  return (struct scaled){place(s, curve, cell), y, y * y * cell->spread[which] / cell->runs};
+  const double all = exp(cell->y[which]), part = which == SECOND ? s->regular : 0;
+  const double factor = exp(-slope * (log(s->size[cell->level]) - s->longest)), y = factor * all;
+  return (struct scaled){place(s, curve, cell), y - factor * part, y * y * cell->spread[which] / cell->runs};
 }
 
 /* The master curve at z by the cells of the other sizes: a straight line through the two neighbours of z in each size
@@ -514,6 +519,16 @@ static bool within(const struct scaling_estimate *value, double target) {
   return fabs(value->estimate - target) <= value->half_width;
 }
 
+/* Is x between controls that were used? */
+static bool is_inside(const struct study *s, double x) {
+  bool below = false, above = false;
+  for (size_t c = 0; c < s->cells; c++) {
+    below = below || (s->cell[c].used && s->cell[c].control <= x);
+    above = above || (s->cell[c].used && s->cell[c].control >= x);
+  }
+  return below && above;
+}
+
 static status answer(struct study *s, struct scaling *out, struct error *error) {
   double ratio, all[SCALING_VALUES], value[SCALING_VALUES];
   if (s->levels < SCALING_LEAST_SIZES)
@@ -536,9 +551,13 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
   fit_all(s, 1, &best, value);
   fit_all(s, 0, &with_smallest, all);
   collapse(s, &best, ORDER, -value[SCALING_BETA], &out->chi_square[0], &out->distance[0]);
+  fit_slope(s, 1, &best, SECOND); /* its regular part */
   collapse(s, &best, SECOND, value[SCALING_GAMMA], &out->chi_square[1], &out->distance[1]);
-  if (isnan(out->chi_square[0] + out->chi_square[1]))
+  if (isnan(out->chi_square[0] + out->chi_square[1]) || !is_inside(s, value[SCALING_CRITICAL])) {
+    for (int k = 0; k < 2; k++)
+      out->chi_square[k] = out->distance[k] = NAN;
     return STATUS_OK;
+  }
   out->kind = SCALING_NOT_ONE;
   for (int k = 0; k < 2; k++)
     if (!(out->chi_square[k] < NOT_ONE || out->distance[k] < NOT_ONE_SHARE))
@@ -555,7 +574,8 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
   }
   TRY(resample(s, &best, bias, out, error));
   const struct scaling_estimate *nu = &out->value[SCALING_NU];
-  const bool jump = within(&out->value[SCALING_BETA], 0) && nu->estimate - nu->half_width <= 1.0 / s->dimensions;
+  out->may_jump = within(&out->value[SCALING_BETA], 0) && nu->estimate - nu->half_width <= 1.0 / s->dimensions;
+  const bool jump = out->may_jump && nu->estimate + nu->half_width < 2.0 / s->dimensions;
   out->kind = isnan(out->value[SCALING_CRITICAL].estimate) ? SCALING_NOT_TOLD : jump ? SCALING_JUMP : SCALING_FOUND;
   return STATUS_OK;
 }

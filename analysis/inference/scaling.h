@@ -43,11 +43,11 @@ struct scaling_run {
 
 enum scaling_kind {
   SCALING_FOUND,
-  SCALING_JUMP,        /* the values are those of a jump: beta/nu is 0 and 1/nu is d within their intervals */
+  SCALING_JUMP,        /* beta/nu is 0 and 1/nu is d within their intervals, and 1/nu is above d/2 */
   SCALING_TOO_FEW,     /* fewer than three sizes, or than two values of the control beside the crossing */
   SCALING_NO_CROSSING, /* the curves of the sizes do not cross, or the runs do not tell */
   SCALING_NOT_ONE,     /* they cross, but their curves are not one: the values are NaN */
-  SCALING_NOT_TOLD,    /* they cross, but no curve fits the runs, or not most of the resampled runs */
+  SCALING_NOT_TOLD,    /* they cross, but no curve fits there the runs, or not most of the resampled runs */
 };
 extern const char
     *const scaling_kind_names[]; /* "found", "jump", "too-few", "no-crossing", "not-one-curve", "not-told" */
@@ -69,13 +69,15 @@ struct scaling {
    * not: the value where they are nearest, Q there, and the range that both sizes have. NaN: none. */
   double crossing, about[2], nearest, nearest_q[2], range[2];
   bool differ, touch; /* by two standard errors somewhere; not by them at the nearest value */
+  bool may_jump;      /* values of a jump are inside the intervals */
   /* x_c, nu, beta/nu, gamma/nu, D, tau. `shift`, without the smallest size less with it, is
    * part of half_width */
   struct scaling_estimate {
     double estimate, half_width, shift;
   } value[SCALING_VALUES];
-  /* Of the collapse of P and of S without the smallest size: reduced chi-square against the curve of the other sizes
-   * (Houdayer & Hartmann 2004, doi 10.1103/PhysRevB.70.014418), and rms distance from it as a share of its value. */
+  /* Of the collapse of P and of S (without its regular part), without the smallest size: reduced chi-square against the
+   * curve of the other sizes (Houdayer & Hartmann 2004, doi 10.1103/PhysRevB.70.014418), and rms distance from it as a
+   * share of its value. */
   double chi_square[2], distance[2];
   struct scaling_cell {                           /* the runs of one size and control */
     double size, control, mean[3], half_width[3]; /* of P, S and Q; 95 % interval; NaN: one run */

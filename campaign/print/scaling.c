@@ -323,6 +323,9 @@ static void write_answer(const struct points *points, const char *quantity, cons
     }
     text_append(text, sizeof text, ". The curves of %zu sizes are one (chi-square %.2g of %s, %.2g of S).",
                 found->sizes, found->chi_square[0], quantity, found->chi_square[1]);
+    if (found->may_jump)
+      text_append(text, sizeof text, " A jump (beta/nu = 0, nu = 1/%d) is within the intervals: more seeds may tell.",
+                  points->dimensions);
     if (*lost)
       text_append(text, sizeof text, " Most resampled runs give no%s: more seeds may.", lost);
     break;

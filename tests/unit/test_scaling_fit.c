@@ -100,6 +100,21 @@ static void a_correction_is_inside_the_interval(void **state) {
     assert_true(fabs(found.value[v].estimate - exact[v]) <= found.value[v].half_width + 2e-3 * exact[v]);
 }
 
+/* S has a part that knows nothing of the transition: as large as the other one at L = 10. The curves are one all the
+ * same. */
+static void a_regular_part_of_the_masses(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  const size_t n = make(&(struct law){SIZES, 0.05, 0, 1}, run);
+  for (size_t i = 0; i < n; i++)
+    run[i].second += 2;
+  find(n, run, &found);
+  assert_int_equal(found.kind, SCALING_FOUND);
+  assert_true(found.distance[1] < 0.1);
+  assert_true(fabs(found.value[SCALING_GAMMA].estimate - GAMMA) <= found.value[SCALING_GAMMA].half_width);
+}
+
 static void the_order_of_runs_and_the_unit_of_x_change_nothing(void **state) {
   (void)state;
   static struct scaling_run run[ALL], other[ALL];
@@ -176,7 +191,7 @@ static void runs_that_tell_no_values(void **state) {
   assert_near(found.crossing, CRITICAL, 0.1);
   assert_near(found.about[0], 13.2, 0.41);
   assert_near(found.about[1], 14.8, 0.41);
-  int not_told = 0;
+  int not_told = 0, may_jump = 0;
   n = make(&(struct law){3, 0.2, 0, 1}, run);
   for (size_t i = 0; i < n; i++)
     run[i].second *= exp(1.2 * noise(run[i].seed, i, 6));
@@ -189,9 +204,34 @@ static void runs_that_tell_no_values(void **state) {
     find(count, some, &found);
     const bool told = found.kind == SCALING_FOUND || found.kind == SCALING_JUMP;
     assert_true(told == !isnan(found.value[SCALING_CRITICAL].estimate));
+    assert_true(found.kind != SCALING_JUMP ||
+                found.value[SCALING_NU].estimate + found.value[SCALING_NU].half_width < 1);
+    may_jump += found.kind == SCALING_FOUND && found.may_jump;
     not_told += found.kind == SCALING_NOT_TOLD && isfinite(found.chi_square[0]);
   }
-  assert_true(not_told > 0);
+  assert_true(not_told > 0 && may_jump > 0);
+}
+
+/* The least and the largest size cross at 14, the larger ones at 12.5, where there are no runs. */
+static void a_critical_value_beyond_the_runs(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING found;
+  size_t count = 0;
+  const size_t n = make(&(struct law){3, 0, 0, 1}, run);
+  for (size_t i = 0; i < n; i++) {
+    const double x = run[i].control, square = run[i].size * run[i].size;
+    const double log_ratio = run[i].size < 15 ? -3 - 0.1 * (x - 14) : -0.05 * run[i].size * (x - 12.5);
+    run[i].largest = 0.4 * (1 + 0.01 * noise(run[i].seed, i, 5));
+    run[i].order = run[i].largest * x;
+    run[i].second = 0.16 * square * exp(log_ratio);
+    if (x > 13)
+      run[count++] = run[i];
+  }
+  find(count, run, &found);
+  assert_int_equal(found.kind, SCALING_NOT_TOLD);
+  assert_near(found.crossing, 14, 0.1);
+  assert_true(isnan(found.chi_square[0]) && isnan(found.value[SCALING_CRITICAL].estimate));
 }
 
 /* A body breaks into halves at a threshold of its own, or stays whole: the thresholds scatter as L^-2. */
@@ -258,6 +298,8 @@ int main(void) {
       cmocka_unit_test(the_order_of_runs_and_the_unit_of_x_change_nothing),
       cmocka_unit_test(two_sizes_are_too_few),
       cmocka_unit_test(curves_that_do_not_cross),
+      cmocka_unit_test(a_regular_part_of_the_masses),
+      cmocka_unit_test(a_critical_value_beyond_the_runs),
       cmocka_unit_test(runs_that_tell_no_values),
       cmocka_unit_test(a_jump_is_told),
       cmocka_unit_test(curves_that_are_not_one),
