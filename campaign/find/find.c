@@ -256,6 +256,10 @@ static void choose_places(struct find *find) {
   }
 }
 
+void find_name(const struct find *find, char *name, size_t size) {
+  snprintf(name, size, "%.120s find %.120s", find->campaign->name, find->input->path);
+}
+
 static status make_campaign(const struct find *find, struct campaign **out, struct error *error) {
   TRY(driver_list_begin(&find->limits, find->base, 1, find->places, out, error));
   struct campaign *campaign = *out;
@@ -264,7 +268,7 @@ static status make_campaign(const struct find *find, struct campaign **out, stru
   memcpy(campaign->axes[0].levels, find->place, find->places * sizeof *find->place);
   campaign->per_point = (int64_t)find->each;
   campaign->first_seed += (int64_t)find->runs; /* a place that comes again has new seeds */
-  snprintf(campaign->name, sizeof campaign->name, "%.120s find %.120s", find->campaign->name, find->input->path);
+  find_name(find, campaign->name, sizeof campaign->name);
   return driver_list_end(campaign, find->reference, "Written by clast find: a round of its runs.", error);
 }
 

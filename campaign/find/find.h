@@ -63,6 +63,9 @@ double find_widest(const struct find *find);
 void find_value(const struct find *find, double x, struct field_value *value);
 double find_place(const struct find *find, const struct field_value *value);
 
+/* The name of the rounds of all searches along the input. */
+void find_name(const struct find *find, char *name, size_t size);
+
 /* Reads the request, runs the rounds and, on rank 0, prints the answer. STATUS_USAGE: wrong input, level or bracket. */
 status find_launch(const struct find_request *request, const struct command_line *line, struct error *error);
 

@@ -321,6 +321,23 @@ static void write_more(const struct find *find) {
   words_print(stdout, "", "%s", text);
 }
 
+/* Runs of other searches along the input: another level, share or bracket. */
+static status tell_others(const struct find *find, struct error *error) {
+  char name[2 * FIELD_TEXT_SIZE];
+  int64_t runs = 0;
+  STORE store = NULL;
+  TRY(store_open_reader(find->limits.store, &store, error));
+  find_name(find, name, sizeof name);
+  TRY(ask_campaign_runs(store, name, &runs, error));
+  const int64_t others = runs - (int64_t)find->runs; /* failed runs count as ours */
+  if (others > 0)
+    words_print(stderr, "",
+                "clast: %lld runs of other searches along %s are left out: a search uses the runs at its own places "
+                "and seeds alone, so that it answers the same whatever the store has",
+                (long long)others, find->input->path);
+  return STATUS_OK;
+}
+
 status find_print(const struct find *find, enum table_format format, struct error *error) {
   char text[SENTENCE];
   if (!table_for_people(format))
@@ -334,6 +351,7 @@ status find_print(const struct find *find, enum table_format format, struct erro
   uncertainty_doubts(&find->doubts, stderr);
   if (find->failed)
     fprintf(stderr, "clast: %zu of %zu runs have no such result and are left out\n", find->failed, find->runs);
+  TRY(tell_others(find, error));
   return tell_resolution(find, error);
 }
 

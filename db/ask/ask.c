@@ -87,6 +87,13 @@ status ask_campaign_attempts(struct store *store, int64_t *attempts, struct erro
                       "run.identity = attempt.identity) GROUP BY identity)");
 }
 
+status ask_campaign_runs(struct store *store, const char *name, int64_t *runs, struct error *error) {
+  return sql_integerf(store->db, runs, error,
+                      "SELECT count(DISTINCT run_id) FROM campaign JOIN campaign_point USING (campaign_id) JOIN run "
+                      "USING (point_id) WHERE name = %Q",
+                      name);
+}
+
 struct answer ask_campaign_sessions(struct store *store, struct error *error) {
   return answer_to(
       store, error,

@@ -68,6 +68,8 @@ status ask_campaign_document(struct store *store, int64_t campaign, char **name,
 
 /* Attempts of the run that failed most often among those that have no result. 0: every run has a result. */
 status ask_campaign_attempts(struct store *store, int64_t *attempts, struct error *error);
+/* Runs at the points of all campaigns of this name. */
+status ask_campaign_runs(struct store *store, const char *name, int64_t *runs, struct error *error);
 
 /* One row per session (invocation that wrote to the store): session, campaign (number; may be NULL), started, ended
  * (may be NULL), outcome (may be NULL), version, commit, command (words with spaces between them). */
