@@ -30,6 +30,7 @@ struct bodies {
   size_t n;
   size_t dimensions; /* 2: masses are kg per metre of thickness, spins have one component */
   double *mass, *radius, *position, *velocity, *spin, *elements; /* owned */
+  double without;                                                /* mass of particles that are in no fragment, kg */
 };
 
 static void free_bodies(struct bodies *b) {
@@ -38,7 +39,7 @@ static void free_bodies(struct bodies *b) {
     free(all[i]);
 }
 
-/* Adds the volume of each particle to its fragment. */
+/* Adds the volume of each particle to its fragment, and the mass of those that are in none, such as a projectile's. */
 static bool add_volumes(struct snapshot_read *file, struct bodies *b) {
   size_t n = 0, labels = 0;
   OWNED double *mass = snapshot_read_rows(file, PARTICLE("mass"), 0, SNAPSHOT_READ_REAL, &n);
@@ -49,6 +50,8 @@ static bool add_volumes(struct snapshot_read *file, struct bodies *b) {
   for (size_t i = 0; i < n; i++)
     if (label[i] >= 0 && (size_t)label[i] < b->n)
       b->radius[label[i]] += mass[i] / density[i];
+    else
+      b->without += mass[i];
   return true;
 }
 
@@ -217,6 +220,9 @@ status export_run(const char *fields, const char *target, struct error *error) {
     code = snapshot_read_refuse(fields, error);
   if (code == STATUS_OK)
     code = particles ? snapshot_file_save(out, target, error) : write_fragments(target, csv, &bodies, error);
+  if (code == STATUS_OK && bodies.without > 0)
+    fprintf(stderr, "clast: %.3g kg in no fragment, such as those of a projectile, are left out: a .h5 has them\n",
+            bodies.without);
   if (code == STATUS_OK) /* other programs have no place for marks */
     uncertainty_doubts(&doubts, stderr);
   snapshot_file_close(out);

@@ -162,21 +162,10 @@ static void answer_also(const struct engine_kind *kind, const struct run_result 
     }
 }
 
-/* What most people want of a run, in six lines, and what else the scene is made for. */
-static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
+static void print_fragments(const struct scene *scene, const struct run_result *result) {
   const struct outcome *o = &result->outcome;
   const struct condition *conditions = scene->kind->conditions;
   char says[256];
-  struct field_value state;
-  field_get(field_find(&outcome_table, OUTCOME_NAME(state), NULL), o, &state);
-  printf("%s, seed %lld: %s after %.4g s in %lld steps\n", scene->name, (long long)seed, state.text, o->time,
-         (long long)o->steps);
-  if (o->state == OUTCOME_INVALID)
-    return;
-  const char *headline = scene_headline(scene);
-  const struct field *row = field_find(scene->kind->results, headline, NULL);
-  if (row)
-    answer_result(scene->kind, result, row);
   answer("M_1/M", o->largest_fraction, condition_mark(conditions, o->warnings, OUTCOME_NAME(largest_fraction)),
          "mass of the largest fragment over the total mass");
   snprintf(says, sizeof says, "%lld %s; the spectrum is complete from %.3g %s on", (long long)o->single_count,
@@ -196,6 +185,24 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
                digit = fit ? pow(10, floor(log10(fit->fit.standard_error))) : 0;
   answer("exponent", digit < 1 ? digit * round(beta / digit) : (double)NAN,
          condition_mark(conditions, o->warnings, OUTCOME_NAME(mean_fragment_mass)), says);
+}
+
+/* What most people want of a run, in six lines, and what else the scene is made for. */
+static void print_answers(const struct scene *scene, int64_t seed, const struct run_result *result) {
+  const struct outcome *o = &result->outcome;
+  const struct condition *conditions = scene->kind->conditions;
+  struct field_value state;
+  field_get(field_find(&outcome_table, OUTCOME_NAME(state), NULL), o, &state);
+  printf("%s, seed %lld: %s after %.4g s in %lld steps\n", scene->name, (long long)seed, state.text, o->time,
+         (long long)o->steps);
+  if (o->state == OUTCOME_INVALID)
+    return;
+  const char *headline = scene_headline(scene);
+  const struct field *row = field_find(scene->kind->results, headline, NULL);
+  if (row)
+    answer_result(scene->kind, result, row);
+  if (!scene->kind->definition || o->fragment_count > 0)
+    print_fragments(scene, result);
   answer("energy error", o->energy_error, CONDITION_SOUND, "of the energy put in, by numerical errors");
   printf("in doubt (!)   %s\n", condition_doubted(conditions, o->warnings) ? o->warnings : "nothing");
   answer_also(scene->kind, result);

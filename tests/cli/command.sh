@@ -55,6 +55,7 @@ prints "runs the program: sh mark.sh {{a}} {{seed}}"; prints "A number"
 [ ! -e touched ] || fail "a program was run without the user's word"
 expect 0 "$clast" simulate mark.yaml $word
 [ -e touched ] || fail "the program was not run with the user's word"
+! grep -q "M_1/M" out || fail "a program without fragments has a largest one"
 expect 0 "$clast" run mark-runs.yaml $word
 rm touched
 expect 64 "$clast" replay mark.db 1
