@@ -279,11 +279,11 @@ const WHAT_ERRORS = '±, which the table of points has too, is the half width of
 function resolutionSentence(rows) {
   const studied = rows.filter((row) => row.resolution !== null), weak = rows.some((row) => row.weak) ? ' ~: weak, too few runs for the interval.' : '';
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;
-  const most = studied.reduce((one, row) => (row.resolution > one.resolution ? row : one));
-  const verdict = ['diverges', 'at-least', 'known'].find((word) => studied.some((row) => row.verdict === word)) ?? 'no-difference';
-  const worst = studied.filter((row) => row.verdict === verdict).length, unbounded = {diverges: 'it does not converge', 'at-least': 'no limit is seen'}[verdict];
-  const some = unbounded && studied.length > 1 ? `at ${worst} of them ${unbounded}, and the largest error is ` : verdict === 'known' ? 'up to ' : '';
-  return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${some}${resolutionText({...most, verdict})}.${weak}`;
+  const count = (verdict) => studied.filter((row) => row.verdict === verdict).length, diverging = count('diverges'), open = count('at-least');
+  const others = studied.filter((row) => row.verdict !== 'diverges'), most = (others.length ? others : studied).reduce((one, row) => (row.resolution > one.resolution ? row : one));
+  const unbounded = [diverging && `at ${diverging} it does not converge`, open && `at ${open} no limit is seen`].filter(Boolean);
+  const found = unbounded.length && studied.length > 1 ? `${unbounded.join(', ')}, and the largest error${diverging && others.length ? ' of the others' : ''} is ` : most.verdict === 'known' ? 'up to ' : '';
+  return `${WHAT_ERRORS}; that was studied at ${plural(studied.length, 'point')}: ${found}${resolutionText(open && most.verdict !== 'diverges' ? {...most, verdict: 'at-least'} : most)}.${weak}`;
 }
 
 // Inputs that are no axis and change from dot to dot.

@@ -132,15 +132,17 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
     snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; %s measures it", converge);
     return;
   case ASK_RESOLUTION_DIVERGES:
-    if (resolution->of_verdict >= resolution->points) {
+    if (resolution->diverging >= resolution->points) {
       snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (%s)", converge);
       return;
     }
     text_append(text, UNCERTAINTY_TEXT, "resolution: does not converge at %" PRId64 " of %" PRId64 " points",
-                resolution->of_verdict, resolution->points);
-    if (resolution->studied > resolution->of_verdict)
-      text_append(text, UNCERTAINTY_TEXT, "; the largest error of the others is %.2g (%s)", resolution->half_width,
-                  resolution->knobs);
+                resolution->diverging, resolution->points);
+    if (resolution->at_least)
+      text_append(text, UNCERTAINTY_TEXT, ", no limit is seen at %" PRId64, resolution->at_least);
+    if (resolution->studied > resolution->diverging)
+      text_append(text, UNCERTAINTY_TEXT, "; the largest error of the others is %s%.2g (%s)",
+                  resolution->at_least ? "at least " : "", resolution->half_width, resolution->knobs);
     break;
   case ASK_RESOLUTION_NO_DIFFERENCE:
     text_append(text, UNCERTAINTY_TEXT, "no difference seen (resolution: %s)", resolution->knobs);
@@ -150,11 +152,15 @@ void uncertainty_resolution(const struct ask_resolution *resolution, char text[U
                 resolution->half_width, resolution->knobs);
     break;
   case ASK_RESOLUTION_AT_LEAST:
-    if (resolution->points > 1)
-      text_append(text, UNCERTAINTY_TEXT,
-                  "no limit is seen at %" PRId64 " of %" PRId64 " points, the largest error is ",
-                  resolution->of_verdict, resolution->points);
-    text_append(text, UNCERTAINTY_TEXT, ">= %.2g (resolution: %s)", resolution->half_width, resolution->knobs);
+    if (resolution->points <= 1) {
+      text_append(text, UNCERTAINTY_TEXT, ">= %.2g (resolution: %s)", resolution->half_width, resolution->knobs);
+      break;
+    }
+    text_append(text, UNCERTAINTY_TEXT,
+                "no limit is seen at %" PRId64 " of %" PRId64
+                " points; the largest error is at least %.2g (resolution: "
+                "%s)",
+                resolution->at_least, resolution->points, resolution->half_width, resolution->knobs);
   }
   if (resolution->studied < resolution->points)
     text_append(text, UNCERTAINTY_TEXT, "; studied at %" PRId64 " of %" PRId64 " points, %s studies others",

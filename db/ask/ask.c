@@ -393,27 +393,26 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
 
   TRY(find_command(store, id, quantity, out, error));
 
-  ANSWER found = answer_to(
-      store, error,
-      "SELECT count(*), count(half_width), max(half_width), sum(verdict = 'diverges'), sum(verdict = 'at-least'), "
-      "sum(verdict = 'known'), max(iif(verdict <> 'diverges', half_width, NULL)) "
-      "FROM (SELECT point_id, max(results_version) AS results_version FROM "
-      "point_total"
-      "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
-      " LEFT JOIN (SELECT * FROM resolution WHERE quantity = %Q) USING (point_id, results_version)",
-      id, quantity);
+  ANSWER found =
+      answer_to(store, error,
+                "SELECT count(*), count(half_width), total(verdict = 'diverges'), total(verdict = 'at-least'), "
+                "total(verdict = 'known'), ifnull(max(iif(verdict <> 'diverges', half_width, NULL)), max(half_width)) "
+                "FROM (SELECT point_id, max(results_version) AS results_version FROM "
+                "point_total"
+                "   WHERE runs > 0 AND %lld IN (0, point_id) GROUP BY point_id)"
+                " LEFT JOIN (SELECT * FROM resolution WHERE quantity = %Q) USING (point_id, results_version)",
+                id, quantity);
   if (answer_next(&found)) {
     out->points = answer_integer(&found, 0);
     out->studied = answer_integer(&found, 1);
-    static const enum ask_resolution_verdict worst[] = {ASK_RESOLUTION_DIVERGES, ASK_RESOLUTION_AT_LEAST,
-                                                        ASK_RESOLUTION_KNOWN};
-    size_t i = 0;
-    while (i < 3 && !answer_integer(&found, 3 + i))
-      i++;
+    out->diverging = (int64_t)answer_real(&found, 2);
+    out->at_least = (int64_t)answer_real(&found, 3);
     if (out->studied > 0)
-      out->verdict = i < 3 ? worst[i] : ASK_RESOLUTION_NO_DIFFERENCE;
-    out->of_verdict = i < 3 ? answer_integer(&found, 3 + i) : out->studied;
-    out->half_width = answer_real(&found, i == 0 ? 6 : 2);
+      out->verdict = out->diverging               ? ASK_RESOLUTION_DIVERGES
+                     : out->at_least              ? ASK_RESOLUTION_AT_LEAST
+                     : answer_real(&found, 4) > 0 ? ASK_RESOLUTION_KNOWN
+                                                  : ASK_RESOLUTION_NO_DIFFERENCE;
+    out->half_width = answer_real(&found, 5);
   }
   TRY(answer_end(&found));
   if (out->studied == 0)

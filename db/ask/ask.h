@@ -197,13 +197,13 @@ enum ask_resolution_verdict {
 };
 
 struct ask_resolution {
-  enum ask_resolution_verdict verdict;
-  double
-      half_width; /* 95 % bound on the change of the quantity with finer resolution, in its unit: the largest of the
-                     points that have the verdict, `known` for those that diverge and others do not; NaN: not known */
-  int64_t points, studied; /* requested points with runs, and how many of them were studied */
-  int64_t of_verdict;      /* how many of these have the verdict, which is the worst of them */
-  char knobs[128];         /* settings studied: "particles, time_step"; other settings may also change the quantity */
+  enum ask_resolution_verdict verdict; /* of several points the worst */
+  /* 95 % bound on the change of the quantity with finer resolution, in its unit. Of several points the largest of those
+   * that do not diverge, or of all if all do; NaN: none. */
+  double half_width;
+  int64_t points, studied;     /* requested points with runs, and how many of them were studied */
+  int64_t diverging, at_least; /* of these: with that verdict */
+  char knobs[128];   /* settings studied: "particles, time_step"; other settings may also change the quantity */
   char command[300]; /* what `clast converge` takes to study these points: "impact.yaml --store other.db -Q broken";
                         "" when several files made them */
 };

@@ -537,7 +537,7 @@ db.execute("update convergence set open = 1 where base_point_id = (select min(ba
 db.commit()
 PY
 expect 0 "$clast" stats each.db
-says "no limit is seen at 1 of 2 points, the largest error is >= 0.0"
+says "no limit is seen at 1 of 2 points; the largest error is at least 0.0"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 ! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"

@@ -69,17 +69,23 @@ static void resolution(void **state) {
   assert_string_equal(text,
                       "up to ± 0.061 (resolution: particles, time_step); studied at 2 of 9 points, `clast converge "
                       "basalt-sphere` studies others");
-  /* A table of which some points do not converge says how many; its one number is the largest of the others. */
+  /* A table of which some points do not converge says how many; its one number is the largest error that is known. */
   found.studied = 9;
-  found.of_verdict = 2;
+  found.diverging = 2;
   found.verdict = ASK_RESOLUTION_DIVERGES;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: does not converge at 2 of 9 points; the largest error of the others is 0.061 "
                             "(particles, time_step)");
-  found.verdict = ASK_RESOLUTION_AT_LEAST;
+  found.at_least = 4;
   uncertainty_resolution(&found, text);
-  assert_string_equal(text, "no limit is seen at 2 of 9 points, the largest error is >= 0.061 (resolution: particles, "
-                            "time_step)");
+  assert_string_equal(text,
+                      "resolution: does not converge at 2 of 9 points, no limit is seen at 4; the largest error of "
+                      "the others is at least 0.061 (particles, time_step)");
+  found.verdict = ASK_RESOLUTION_AT_LEAST;
+  found.at_least = 9;
+  uncertainty_resolution(&found, text);
+  assert_string_equal(text, "no limit is seen at 9 of 9 points; the largest error is at least 0.061 (resolution: "
+                            "particles, time_step)");
 }
 
 static void cells(void **state) {
