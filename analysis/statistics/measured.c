@@ -9,6 +9,7 @@
 #include <strings.h>
 
 #include "engine/grow.h"
+#include "engine/random.h"
 #include "schemas/csv.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
@@ -187,12 +188,14 @@ static double log_likelihood(const struct measured *m, size_t first, double from
   return sum;
 }
 
-/* Copies the masses of run r of at least `from` into `room`, ascending; with `weighed` their sums follow. */
-static struct sorted sort_run(const struct pooled_runs *runs, size_t r, double from, bool weighed, double *room) {
+/* Copies the masses of at least `from` of some runs into `room`, ascending; with `weighed` their sums follow. */
+static struct sorted sort_runs(const struct pooled_runs *runs, size_t count, const size_t *which, double from,
+                               bool weighed, double *room) {
   size_t n = 0;
-  for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++)
-    if (runs->masses[i] >= from && isfinite(runs->masses[i]))
-      room[n++] = runs->masses[i];
+  for (size_t k = 0; k < count; k++)
+    for (size_t i = runs->first[which[k]]; i < runs->first[which[k] + 1]; i++)
+      if (runs->masses[i] >= from && isfinite(runs->masses[i]))
+        room[n++] = runs->masses[i];
   qsort(room, n, sizeof *room, sample_ascending);
   if (!weighed)
     return (struct sorted){n, room, NULL};
@@ -203,22 +206,55 @@ static struct sorted sort_run(const struct pooled_runs *runs, size_t r, double f
   return (struct sorted){n, room, above};
 }
 
+/* Are some runs, joined, at least as far from the others as what was measured? */
+static bool is_far(const struct measured *m, size_t first, const struct sorted *joined, const struct sorted *pool,
+                   double distance) {
+  return (m->single ? distance_of_sample(joined, pool, true) : distance_at(m, first, joined, pool)) >= distance;
+}
+
+/* Share of draws of `together` runs that are far. `which` holds the numbers of all runs, in any order. */
+static double share_of_draws(const struct measured *m, size_t first, const struct pooled_runs *runs,
+                             const struct sorted *pool, double *room, size_t *which,
+                             const struct measured_match *match) {
+  enum { DRAWS = 1000 };
+  size_t far = 0, drawn = 0;
+  for (uint64_t d = 0; d < DRAWS; d++) {
+    for (size_t k = 0; k < match->together; k++) { /* the first steps of a shuffle */
+      const size_t other = k + (size_t)(random_draw(0, RANDOM_RESAMPLE, d, k) * (double)(runs->count - k));
+      const size_t one = which[k];
+      which[k] = which[other];
+      which[other] = one;
+    }
+    const struct sorted joined = sort_runs(runs, match->together, which, match->from, m->weighed, room);
+    if (joined.n < 2 || joined.n == pool->n)
+      continue;
+    drawn++;
+    far += is_far(m, first, &joined, pool, match->distance);
+  }
+  return drawn ? (double)far / (double)drawn : (double)NAN;
+}
+
 static void compare_runs(const struct measured *m, size_t first, const struct pooled_runs *runs,
-                         const struct sorted *pool, double *room, struct measured_match *out) {
+                         const struct sorted *pool, double *room, size_t *which, struct measured_match *out) {
   struct sample_moments moments = {0};
-  size_t judged = 0, far = 0;
+  size_t far = 0;
   for (size_t r = 0; r < runs->count; r++) {
-    const struct sorted run = sort_run(runs, r, out->from, m->weighed, room);
+    which[r] = r;
+    const struct sorted run = sort_runs(runs, 1, &r, out->from, m->weighed, room);
     sample_add(&moments, (double)run.n);
     if (run.n < 2 || run.n == pool->n)
       continue;
-    judged++;
-    far += (m->single ? distance_of_sample(&run, pool, true) : distance_at(m, first, &run, pool)) >= out->distance;
+    out->judged++;
+    far += is_far(m, first, &run, pool, out->distance);
   }
   out->simulated = sample_summarise_moments(&moments, 0.95);
-  out->judged = judged;
-  if (judged >= MATCH_RUNS && isfinite(out->distance))
-    out->share = (double)far / (double)judged;
+  const double times = out->fragments / out->simulated.mean; /* NaN for a sieve table */
+  out->together = times >= 1.5 && times < (double)SIZE_MAX ? (size_t)(times + 0.5) : 1;
+  out->needed = out->together > MATCH_RUNS / MATCH_GROUPS ? MATCH_GROUPS * out->together : MATCH_RUNS;
+  if (out->judged < out->needed || !isfinite(out->distance))
+    return;
+  out->share = out->together > 1 ? share_of_draws(m, first, runs, pool, room, which, out)
+                                 : (double)far / (double)out->judged;
 }
 
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
@@ -228,7 +264,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   complete = fmax(fmax(complete, measured->complete), 0); /* fmax ignores a NaN */
   while (first < measured->n && measured->mass[first] < complete)
     first++;
-  *out = (struct measured_match){complete, 0, sample_summarise(0, NULL, 0.95), NAN, NAN, NAN, 0};
+  *out = (struct measured_match){complete, 0, sample_summarise(0, NULL, 0.95), NAN, NAN, NAN, 0, MATCH_RUNS, 1};
   if (first == measured->n || !(measured->above[first] > 0))
     return STATUS_OK;
   if (!measured->single || !(complete > 0))
@@ -236,14 +272,16 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   out->fragments = measured->weighed ? (double)NAN : measured->above[first];
   OWNED double *masses = NULL;
   TRY(memory_array(&masses, 2 * (2 * all + 1), sizeof *masses, "a measured spectrum", error));
-  const struct pooled_runs together = {1, (const size_t[]){0, all}, runs->masses};
-  const struct sorted pool = sort_run(&together, 0, out->from, measured->weighed, masses);
+  OWNED size_t *which = NULL;
+  TRY(memory_array(&which, runs->count + 1, sizeof *which, "a measured spectrum", error));
+  const struct pooled_runs one = {1, (const size_t[]){0, all}, runs->masses};
+  const struct sorted pool = sort_runs(&one, 1, (const size_t[]){0}, out->from, measured->weighed, masses);
   const size_t left = measured->n - first;
   if (pool.n > 0 && left > 1 && !(out->fragments < 2)) { /* one fragment or class has no shape */
     out->distance = measured_distance(measured, first, &pool);
     out->log_likelihood = measured->weighed ? (double)NAN : log_likelihood(measured, first, out->from, &pool);
   }
-  compare_runs(measured, first, runs, &pool, masses + 2 * all + 1, out);
+  compare_runs(measured, first, runs, &pool, masses + 2 * all + 1, which, out);
   return STATUS_OK;
 }
 

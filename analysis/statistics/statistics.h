@@ -535,20 +535,24 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
 /* Agreement of runs with measured data, for fragments of at least `complete` only. Shapes are compared, each normalised
  * by its own number of fragments; the numbers are given separately. Sieve tables: shares of the mass are compared
  * instead of numbers. */
-enum { MATCH_RUNS = 20 };
+enum { MATCH_RUNS = 20, MATCH_GROUPS = 4 };
 struct measured_match {
   double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
   double fragments; /* number of measured fragments; NaN for a sieve table */
   struct sample_summary simulated; /* fragments per run */
   double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than
                       two measured fragments or classes, which have no shape */
-  double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so
-                   a share below 0.05 is evidence against the pool. NaN for fewer than MATCH_RUNS runs with two or more
-                   fragments: so few can be all nearer by chance */
+  /* Of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so a share below
+   * 0.05 is evidence against the pool. Where a run has far fewer fragments than were measured, its own distance is
+   * chance: then of draws of `together` runs, which have as many. NaN: fewer than `needed` runs are judged: so few can
+   * be all nearer by chance. */
+  double share;
   double log_likelihood; /* of the measured fragments in classes of mass (the store's bins, or the thresholds), if each
                             is drawn from the pool; half a fragment is added to each class. Compare it between pools
                             with the same `complete`. NaN for a sieve table */
-  size_t judged;         /* runs with two or more fragments from `from` on, which `share` is of */
+  size_t judged;         /* runs with two or more fragments from `from` on */
+  size_t needed;         /* MATCH_RUNS, or MATCH_GROUPS times `together` */
+  size_t together;       /* runs that have as many fragments as were measured; 1 for a sieve table */
 };
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
                         struct measured_match *out, struct error *error);

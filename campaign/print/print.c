@@ -348,30 +348,33 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
 static const double FAR = 0.05; /* the measured spectrum differs from a pool when fewer runs are as far */
 
 /* The answer in words: of one pool with its share of runs, of more with their numbers. */
-static void tell_shape(size_t pools, size_t agree, size_t differ, double share, bool nothing, const size_t judged[2]) {
+static void tell_shape(size_t pools, size_t agree, size_t differ, const struct measured_match *match, bool nothing,
+                       const size_t judged[2]) {
+  const double share = match->share;
+  char joined[120] = "of the runs are as far from the other runs as the measured spectrum is";
+  if (match->together > 1)
+    snprintf(joined, sizeof joined,
+             "of draws of %zu runs, which have as many fragments, are as far from the other runs", match->together);
   if (agree + differ == 0 && nothing)
     puts("no verdict on the shape: no distance can be told, see below");
   else if (agree + differ == 0)
     words_print(stdout, "",
                 judged[0] == judged[1]
-                    ? "no verdict on the shape: it needs %d runs of two fragments or more from there on, and has %zu"
-                    : "no verdict on the shape: it needs %d runs of two fragments or more from there on; the rows have "
-                      "%zu to %zu",
-                MATCH_RUNS, judged[0], judged[1]);
+                    ? "no verdict on the shape: it needs %zu runs of two fragments or more from there on, and has %zu"
+                    : "no verdict on the shape: it needs %zu runs of two fragments or more from there on; the rows "
+                      "have %zu to %zu",
+                match->needed, judged[0], judged[1]);
   else if (pools > 1)
     words_print(
         stdout, "",
         pools == agree + differ
             ? "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu"
             : "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu, no verdict on "
-              "%zu, of which one has %zu runs of two fragments or more (%d are needed)",
-        agree, pools, FAR, differ, pools - agree - differ, judged[0], MATCH_RUNS);
+              "%zu, of which one has %zu runs of two fragments or more (%zu are needed)",
+        agree, pools, FAR, differ, pools - agree - differ, judged[0], match->needed);
   else
-    words_print(
-        stdout, "",
-        "%s in shape, whatever the number of fragments: %.2g %% of the runs are as far from the other runs as the "
-        "measured spectrum is (differs: below %.2g %%)",
-        agree ? "agrees" : "differs", 100 * share, 100 * FAR);
+    words_print(stdout, "", "%s in shape, whatever the number of fragments: %.2g %% %s (differs: below %.2g %%)",
+                agree ? "agrees" : "differs", 100 * share, joined, 100 * FAR);
   putchar('\n');
 }
 
@@ -402,16 +405,17 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
   size_t count = 0, agree = 0, differ = 0;
-  double share = NAN;
+  struct measured_match last = {.share = NAN, .needed = MATCH_RUNS, .together = 1};
   bool nothing = false; /* a spectrum has no fragment above the mass where all are complete */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
     nothing |= !isfinite(match.distance);
-    share = match.share;
+    match.needed = match.needed > last.needed ? match.needed : last.needed;
+    last = match;
     count++;
-    agree += share >= FAR;
-    differ += share < FAR;
+    agree += match.share >= FAR;
+    differ += match.share < FAR;
     const struct pooled_runs *runs = &pool->data.runs;
     double mass = 0;
     for (size_t i = 0; i < runs->first[runs->count]; i++) {
@@ -438,18 +442,19 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   }
   TRY(ask_pools_end(&pools));
   if (table_for_people(format))
-    tell_shape(count, agree, differ, share, nothing, judged);
+    tell_shape(count, agree, differ, &last, nothing, judged);
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
-    fprintf(stderr,
-            "clast: the measured and all simulated spectra are complete from %.3g %s on; from: %s. distance: "
-            "Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the "
-            "others as "
-            "the measured one (one experiment is one specimen; below 0.05 speaks against the point; -: fewer than 20 "
-            "runs of two fragments). One measured fragment or class has no shape, and no distance\n",
-            complete, kg, measured->single ? "this mass" : "the first measured class there",
-            measured->weighed ? "the shares of mass" : "the shapes");
+    fprintf(
+        stderr,
+        "clast: the measured and all simulated spectra are complete from %.3g %s on; from: %s. distance: "
+        "Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the "
+        "others as "
+        "the measured one, or of as many runs together as have its number of fragments (below 0.05 speaks against "
+        "the point; -: too few runs of two fragments). One measured fragment or class has no shape, and no distance\n",
+        complete, kg, measured->single ? "this mass" : "the first measured class there",
+        measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,
               "clast: no distance: from there on there is no simulated fragment, or only one measured %s. The heaviest "
