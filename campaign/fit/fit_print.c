@@ -2,6 +2,7 @@
  * not, and what the errors include. */
 #include "campaign/fit/fit.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
@@ -430,6 +431,34 @@ static void tell_errors(const struct fit *fit, FILE *out) {
   }
 }
 
+/* Where points share their seeds and a seed moves all of them alike, the scatter is that of few specimens, however many
+ * points there are. Variances of P points with the correlation rho have 1 + (P - 1) rho^2 times the variance of
+ * independent ones in their mean. Tells the datum of which least is known. */
+static void tell_shared_seeds(const struct fit *fit, FILE *out) {
+  enum { ENOUGH = 10 }; /* degrees of freedom: the standard deviation is known to a factor of 1.6 then */
+  double least = ENOUGH;
+  size_t datum = 0;
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
+    const double free = (double)scatter->freedom / (1 + ((double)fit->points - 1) * scatter->shared * scatter->shared);
+    if (fit->exact[k] || !(free < least))
+      continue;
+    least = free;
+    datum = k;
+  }
+  if (!(least < ENOUGH))
+    return;
+  char label[LABEL];
+  observed_label(fit->observed, datum, label, sizeof label);
+  words_print(
+      out, "",
+      "SEEDS: all points share %zu seeds, which move %s alike (correlation %.2g). So its scatter over seeds is "
+      "known from about %.2g specimens, and may be %.1g times as large as sd_seeds; the intervals do not hold "
+      "that. Give each point seeds of its own: `seeds: {per_point: %zu, independent: true}`, and another store.",
+      fit->replicates, label, fit->surfaces.scatter[datum].shared, 1 + least,
+      sqrt(least / gsl_cdf_chisq_Pinv(0.05, least)), fit->replicates);
+}
+
 /* Names the assumptions of the algebra that do not hold. */
 static void tell_doubts(const struct fit *fit, FILE *out) {
   char label[LABEL];
@@ -469,6 +498,7 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
 
 static void tell(const struct fit *fit, FILE *out) {
   tell_errors(fit, out);
+  tell_shared_seeds(fit, out);
   tell_doubts(fit, out);
   words_print(out, "",
               "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. share of prior: width of the 90 "

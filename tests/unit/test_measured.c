@@ -306,10 +306,53 @@ static void a_run_among_runs(void **state) {
   assert_true(fabs(mean - 0.5) < 4 * sqrt(1 / 12.0 / CASES));
 }
 
+/* Runs of three fragments beside a specimen of 30: their own distances are chance, those of ten runs together are not.
+ * A specimen of the same law has shares that are uniform in 0..1; one of a steeper law, N ~ m^-2 for m^-1, differs. */
+static void a_specimen_with_more_fragments_than_a_run(void **state) {
+  (void)state;
+  enum { RUNS = 80, EACH = 3, MEASURED = 30, CASES = 60 };
+  static double masses[RUNS * EACH];
+  size_t first[RUNS + 1];
+  double mass[MEASURED], above[MEASURED], mean[2] = {0, 0};
+  int differ[2] = {0, 0};
+  uint64_t state_of_draw = 54321;
+  for (size_t r = 0; r <= RUNS; r++)
+    first[r] = r * EACH;
+  for (int i = 0; i < MEASURED; i++)
+    above[i] = MEASURED - i;
+  for (int c = 0; c < 2 * CASES; c++) {
+    const int steeper = c % 2;
+    for (size_t i = 0; i < RUNS * EACH + MEASURED; i++) {
+      state_of_draw = state_of_draw * 6364136223846793005u + 1442695040888963407u;
+      const double one = 1 / (1 - (double)(state_of_draw >> 11) * 0x1p-53);
+      if (i < RUNS * EACH)
+        masses[i] = one;
+      else
+        mass[i - RUNS * EACH] = steeper ? sqrt(one) : one;
+    }
+    qsort(mass, MEASURED, sizeof *mass, sample_ascending);
+    const struct measured m = {.single = true, .n = MEASURED, .mass = mass, .above = above};
+    struct measured_match match;
+    assert_int_equal(measured_compare(&m, &(struct pooled_runs){RUNS, first, masses}, 1, &match, &error), STATUS_OK);
+    assert_true(match.together == 10 && match.needed == 40);
+    mean[steeper] += match.share / CASES;
+    differ[steeper] += match.share < 0.05;
+    assert_int_equal(measured_compare(&m, &(struct pooled_runs){39, first, masses}, 1, &match, &error), STATUS_OK);
+    assert_true(isnan(match.share) && match.judged == 39); /* too few to draw ten from */
+  }
+  assert_true(fabs(mean[0] - 0.5) < 4 * sqrt(1 / 12.0 / CASES));
+  assert_true(differ[0] <= 8); /* 3 of 60 expected */
+  assert_true(differ[1] >= CASES / 2);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds), cmocka_unit_test(two_dimensions),
-                                     cmocka_unit_test(bad_files),       cmocka_unit_test(forms_of_laboratories),
-                                     cmocka_unit_test(sieves),          cmocka_unit_test(distances),
-                                     cmocka_unit_test(a_run_among_runs)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds),
+                                     cmocka_unit_test(two_dimensions),
+                                     cmocka_unit_test(bad_files),
+                                     cmocka_unit_test(forms_of_laboratories),
+                                     cmocka_unit_test(sieves),
+                                     cmocka_unit_test(distances),
+                                     cmocka_unit_test(a_run_among_runs),
+                                     cmocka_unit_test(a_specimen_with_more_fragments_than_a_run)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
