@@ -1,4 +1,4 @@
-// The fragment mass spectrum of the chosen points with its band and the fitted power law: each point for itself, or all
+// The fragment mass spectrum of the chosen points with its intervals and the fitted power law: each point for itself, or all
 // of them together when they are too many to be told apart.
 import {COLOURS, DASHES, SHAPES, draw, logAxis, nothing} from './chart.js';
 import * as questions from './questions.js';
@@ -66,10 +66,10 @@ function fitOf(curve) {
   return {text: `β = ${withError(fit.mean, fit.hw95)} from ${number(fit.lower, 2)} ${curve.from.facts.mass_unit ?? 'kg'} on${goodnessOf(curve.from, fit.point_id)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
 }
 
-function bandOf(curve) {
+function marksOf(curve) {
   return curve.bins.map((bin) => {
     const width = bin.upper - bin.lower, density = bin.count_mean / width, half = (bin.count_hw95 ?? 0) / width;
-    return {name: curve.name, mass: Math.sqrt(bin.lower * bin.upper), lower: bin.lower, upper: bin.upper, density, low: Math.max(density - half, density / 20),
+    return {name: curve.name, mass: Math.sqrt(bin.lower * bin.upper), lower: bin.lower, upper: bin.upper, density, low: density - half,
       high: density + half, hw95: bin.count_hw95 === null ? null : half, count: bin.count, shown: `${number(density, 3)}${bin.count_hw95 === null ? '' : ` ± ${number(half, 2)}`}`};
   });
 }
@@ -90,14 +90,16 @@ export async function showSpectrum() {
   const drawn = curves();
   if (drawn.length === 0)
     return nothing(figure, chosenPoints().length ? 'No spectrum of the chosen points is on this page (see "left out here").' : 'Choose a point.');
-  const rows = drawn.flatMap(bandOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
+  const rows = drawn.flatMap(marksOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
   const names = drawn.map((curve) => curve.name), kg = drawn[0].from.facts.mass_unit ?? 'kg';
   const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: `fragment mass m (${kg})`, axis: logAxis(rows.map((row) => row.mass))};
-  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: `F(m), fragments per run and ${kg}`, axis: logAxis(rows.flatMap((row) => [row.low, row.high]))});
+  const foot = Math.min(...rows.map((row) => (row.low > 0 ? row.low : row.density / 3))); // of the axis; an interval that reaches 0 ends there
+  for (const row of rows) row.low = row.low > 0 ? row.low : foot / 10;
+  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log', domainMin: foot, nice: false}, title: `F(m), fragments per run and ${kg}`, axis: logAxis([foot, ...rows.map((row) => row.high)])});
   const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
   const layer = [
-    {mark: {type: 'area', opacity: 0.2, tooltip: null}, encoding: {x, y: y('low'), y2: {field: 'high'}, color: colour}},
+    {transform: [{filter: 'datum.hw95 !== null'}], mark: {type: 'rule', strokeWidth: 3, opacity: 0.4, clip: true, tooltip: null}, encoding: {x, y: y('low'), y2: {field: 'high'}, color: colour}},
     {mark: {type: 'point', filled: true, size: 50}, encoding: {x, y: y('density'), color: colour,
       shape: {field: 'name', type: 'nominal', scale: {domain: names, range: SHAPES}, legend},
       opacity: {condition: {test: `datum.lower < ${complete}`, value: 0.3}, value: 1},
@@ -110,7 +112,7 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have, so that they lie higher; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of), 'beta')}`,
+    caption: `${told}. Bars: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}, down to the axis where one reaches 0. Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have, so that they lie higher; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn[0].from, drawn.flatMap(of), 'beta')}`,
     command: commandOf(drawn),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'number_density', 'number_density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

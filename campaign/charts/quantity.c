@@ -345,6 +345,8 @@ void quantity_tell_resolutions(struct store *store, const char *names, const str
     names = OUTCOME_DEFAULT;
   while (*names) {
     names = text_next_item(names, name, sizeof name);
+    for (char *dot = name; (dot = strchr(dot, '.'));) /* a column's name has none */
+      *dot = '_';
     quantity_tell_resolution(store, name, pooled);
   }
 }
@@ -523,7 +525,8 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   if (*title >= 'a' && *title <= 'z')
     *title = (char)(*title - 'a' + 'A');
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
-  charts_resolution(store, quantity->name, "thin bars add what is known of the resolution: ", resolution, sizeof resolution);
+  charts_resolution(store, quantity->name, "thin bars add what is known of the resolution: ", resolution,
+                    sizeof resolution);
   snprintf(caption, sizeof caption, "Error bars: %s; %s", intervals, resolution);
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);

@@ -373,7 +373,7 @@ static void choose(struct accuracy *accuracy) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (option->seeds > 0)
       *(isnan(option->beyond) ? &open : &accuracy->chosen) = i;
-    if (need_of(option) <= need_of(&accuracy->options[accuracy->reference]))
+    if (resolution_of(option) <= resolution_of(&accuracy->options[accuracy->reference]))
       accuracy->reference = i;
   }
   if (in_time && accuracy->chosen == accuracy->count)
@@ -920,8 +920,7 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
     words_print(stdout, "",
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
-                "point_cpu: by the runs of the study. run_cost: against the smallest error%s",
-                campaign->accuracy_of_value ? ", which of each setting is a share of its own mean" : "");
+                "point_cpu: by the runs of the study. run_cost: against the smallest error");
     if (*accuracy.marked && accuracy.chosen < accuracy.count)
       words_print(stdout, "", "Left out, as their runs are in doubt (!) where the scene's own are not: %s",
                   accuracy.marked);

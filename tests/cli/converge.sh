@@ -172,6 +172,12 @@ expect 0 "$clast" stats tiny.db --studies
 says "pooled over fidelity.integrator, threshold.angle, threshold.strain"
 expect 0 "$clast" plot tiny.db tiny.png --x threshold.angle --by threshold.strain
 says "left out: 4 points"
+# A study that is stopped leaves points that no campaign has and that have no runs.
+cp tiny.db planned.db
+sqlite3 planned.db "insert into point select 1000, randomblob(16), null, engine, scene_name, scene from point limit 1;
+  insert into point_input select 1000, path, value from point_input where point_id = (select min(point_id) from point)"
+expect 0 "$clast" map planned.db planned.png
+says "left out: 5 points"
 
 # Accuracy on demand: without a study the command is named; then the cheapest settings are taken, and their seeds run.
 cat >sharp.yaml <<'YAML'
@@ -552,4 +558,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 137
+done_after 138

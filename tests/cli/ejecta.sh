@@ -11,6 +11,9 @@ seeds: {per_point: 2}
 YAML
 expect 0 "$clast" run shots.yaml -j 2 --quiet
 expect 0 "$clast" check shots.db
+# A result by the name that it has in a scene: its error is that of the column.
+expect 0 "$clast" stats shots.db -Q ejecta.mass_fraction
+says "clast: ejecta_mass_fraction: intervals are over"
 expect 0 "$clast" spectrum shots.db --ejecta
 prints "momentum [kg m/s]"; says "intervals over runs"; says "coarse"
 # All of the table is what the results say; the table of the command has the means of a point.

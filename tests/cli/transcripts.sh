@@ -14,8 +14,11 @@ db = sqlite3.connect(sys.argv[1])
 surplus = "run_id IN (SELECT run_id FROM run WHERE surplus)"
 tables = [name for name, in db.execute("SELECT name FROM sqlite_master WHERE type = 'table' AND name <> 'run'")]
 for table in tables + ["run"]:
-    if "run_id" in [column[1] for column in db.execute(f"PRAGMA table_info({table})")]:
+    columns = [column[1] for column in db.execute(f"PRAGMA table_info({table})")]
+    if "run_id" in columns:
         db.execute(f"DELETE FROM {table} WHERE {surplus}")
+    elif "surplus" in columns:
+        db.execute(f"UPDATE {table} SET surplus = 0")
 db.execute("UPDATE run SET wall_time = point_id + 0.25 * replicate, cpu_time = point_id + 0.125 * replicate, peak_memory = 1024 * (1000 + 100 * point_id + replicate), host = 'here', finished_at = 1e9 + replicate")
 db.execute("UPDATE session SET started_at = '2026-01-01T00:00:00.000Z', ended_at = '2026-01-01T00:00:10.000Z', host = 'here', pid = 1")
 if len(sys.argv) > 2:
