@@ -97,6 +97,10 @@ void sample_of_share(struct sample_summary *summary, double level) {
                    deviation > SAMPLE_EDGE_SKEW * near);
 }
 
+double sample_deviation_factor(double freedom) {
+  return sqrt(freedom / gsl_cdf_chisq_Pinv(0.05, freedom));
+}
+
 double sample_share_half_width(size_t n, double mean, double deviation, double level) {
   struct sample_summary of = {.n = n, .mean = mean, .standard_deviation = deviation, .half_width = NAN};
   if (!(n > 1 && deviation > SAMPLE_ROUNDING * fabs(mean)))

@@ -69,6 +69,10 @@ void sample_of_share(struct sample_summary *summary, double level);
  */
 double sample_share_half_width(size_t n, double mean, double deviation, double level);
 
+/* Upper 95 % bound of a standard deviation over its estimate from so many degrees of freedom (above 0), of a normal
+ * law: 16 of 1, 1.6 of 10. */
+double sample_deviation_factor(double freedom);
+
 /* The values that a quantity can have: HUGE_VAL is no end. */
 struct sample_range {
   double least, most;

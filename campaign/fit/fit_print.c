@@ -2,7 +2,6 @@
  * not, and what the errors include. */
 #include "campaign/fit/fit.h"
 
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
@@ -455,8 +454,8 @@ static void tell_shared_seeds(const struct fit *fit, FILE *out) {
       "SEEDS: all points share %zu seeds, which move %s alike (correlation %.2g). So its scatter over seeds is "
       "known from about %.2g specimens, and may be %.1g times as large as sd_seeds; the intervals do not hold "
       "that. Give each point seeds of its own: `seeds: {per_point: %zu, independent: true}`, and another store.",
-      fit->replicates, label, fit->surfaces.scatter[datum].shared, 1 + least,
-      sqrt(least / gsl_cdf_chisq_Pinv(0.05, least)), fit->replicates);
+      fit->replicates, label, fit->surfaces.scatter[datum].shared, 1 + least, sample_deviation_factor(least),
+      fit->replicates);
 }
 
 /* Names the assumptions of the algebra that do not hold. */

@@ -311,9 +311,17 @@ static void shares_of_few_seeds(void **state) {
   }
 }
 
+/* Tables of chi-square: 5 % quantiles 0.00393 (1 degree of freedom) and 3.940 (10). */
+static void a_deviation_of_few_values(void **state) {
+  (void)state;
+  assert_true(fabs(sample_deviation_factor(1) - sqrt(1 / 0.00393214)) < 1e-3);
+  assert_true(fabs(sample_deviation_factor(10) - sqrt(10 / 3.940299)) < 1e-6);
+}
+
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_deviation_of_few_values),
+                                     cmocka_unit_test(known_samples),
                                      cmocka_unit_test(two_modes),
                                      cmocka_unit_test(counts_in_few_steps),
                                      cmocka_unit_test(runs_for_an_interval),
