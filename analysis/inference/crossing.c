@@ -402,7 +402,7 @@ size_t crossing_next(const struct crossing *found, size_t runs, double place[CRO
 
 size_t crossing_runs_for(size_t runs, double width, double within) {
   const double exact = (double)runs * (width / within) * (width / within), step = pow(10, floor(log10(exact)) - 1);
-  return (size_t)(ceil(exact / step - 1e-9) * step + 0.5);
+  return exact < 1e15 ? (size_t)(ceil(exact / step - 1e-9) * step + 0.5) : SIZE_MAX;
 }
 
 bool crossing_is_answer(const struct crossing *found, double within) {

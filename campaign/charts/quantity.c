@@ -210,7 +210,7 @@ static status none_suits(struct store *store, const struct axes_wanted *wanted, 
         axes->word);
   if (wanted->least < 2)
     return status_fail(error, STATUS_USAGE,
-                       "no varied input is one of all points: -x %s draws the %" PRId64 " of %" PRId64
+                       "no varied input has numbers in all points: -x %s draws the %" PRId64 " of %" PRId64
                        " points that have it",
                        best[0]->word, of.numbers, of.points);
   return status_fail(error, STATUS_USAGE,

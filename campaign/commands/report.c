@@ -225,7 +225,9 @@ static status run(const struct command_line *line, struct error *error) {
   if (line->count > STORES)
     return status_fail(error, STATUS_USAGE, "a page shows at most %d stores", STORES);
   const char *dot = options->output ? strrchr(options->output, '.') : ".html";
-  if (!dot || (strcmp(dot, ".html") != 0 && strcmp(dot, ".htm") != 0))
+  if (options->output && strncmp(options->output, "/dev/", 5) == 0)
+    dot = ".html";
+  if (!dot || (strcasecmp(dot, ".html") != 0 && strcasecmp(dot, ".htm") != 0))
     return status_fail(error, STATUS_USAGE, "%s: the page is HTML, which a browser can print: name it PAGE.html",
                        options->output);
   name_page(line->arguments[0], name, sizeof name);

@@ -700,11 +700,15 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", width[64], share[32] = "", more[256] = "", chosen[256], smallest[1200], text[UNIT_TEXT];
+  char next[1600] = "", width[64], share[64] = "", more[256] = "", chosen[256], smallest[1200], text[UNIT_TEXT];
   const char *unit = width_unit(campaign, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
-    snprintf(share, sizeof share, " (%.2g %%)", 100 * least / fabs(best->mean));
+    snprintf(share, sizeof share,
+             best->mean == 0            ? " (no share of a mean of 0 allows an error)"
+             : least < fabs(best->mean) ? " (%.2g %%)"
+                                        : " (%.0f %%)",
+             100 * least / fabs(best->mean));
   const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
   const bool by_resolution = !accuracy->open && best->middle * least >= best->within;
   const bool of_another = finest && strncmp(accuracy->left_out, finest->knob, strlen(finest->knob)) != 0;

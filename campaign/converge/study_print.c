@@ -262,7 +262,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     rest -= row->resolution;
   }
   if (rest < -1e-9 * told->error)
-    fprintf(out, "; a share cannot move farther");
+    fprintf(out, told->error < 0.5 ? "; a larger study in the store tells less" : "; a share cannot move farther");
   else if (rest > 1e-9 * told->error) {
     fprintf(out, "%sother or larger studies %s", before, study_show_error(rest, false, text));
     before = ", ";
@@ -284,7 +284,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   fputs(*before == ',' ? "." : "", out);
   if (seeds_are_equal(count, found))
     fputs(" All seeds of a level are equal: more of them tell no more.", out);
-  if (told->error >= fabs(told->mean) && fabs(told->mean) > 0)
+  if (told->error > 0 && told->error >= fabs(told->mean))
     fputs(" Such an error is as large as the value: finer levels are needed, or more seeds.", out);
   fputc('\n', out);
 }

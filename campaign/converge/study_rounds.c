@@ -307,16 +307,17 @@ static void tell_size(struct rounds *rounds) {
   progress_duration(all_s, all_time, sizeof all_time);
   if (isfinite(rule->seconds))
     snprintf(most, sizeof most, "; it ends after %.4g s (--seconds)", rule->seconds);
-  fprintf(stderr, "clast: %zu %s, %zu %s: the first %lld seeds of all levels take %lld more runs, about %s%s\n", points,
-          points == 1 ? "point" : "points", knobs,
-          points == 1 ? (knobs == 1 ? "knob" : "knobs") : (knobs == 1 ? "knob each" : "knobs each"),
-          (long long)rule->first_seeds, (long long)runs, time, most);
+  if (runs > 0)
+    fprintf(stderr, "clast: %zu %s, %zu %s: the first %lld seeds of all levels take %lld more runs, about %s%s\n",
+            points, points == 1 ? "point" : "points", knobs,
+            points == 1 ? (knobs == 1 ? "knob" : "knobs") : (knobs == 1 ? "knob each" : "knobs each"),
+            (long long)rule->first_seeds, (long long)runs, time, most);
   if (all > runs)
-    fprintf(stderr, "clast: then more seeds until every bias is narrow (--within): at most %lld runs, about %s\n",
-            (long long)all, all_time);
+    fprintf(stderr, "clast: %smore seeds until every bias is narrow (--within): at most %lld runs, about %s\n",
+            runs > 0 ? "then " : "", (long long)all, all_time);
 }
 
-/* A study takes the place of an earlier one of the same knob, also of one with more seeds: says so. */
+/* A study with a new level takes the place of an earlier one of the same knob, also of one with more seeds: says so. */
 static status tell_replaced(const struct rounds *rounds, struct store *store, struct error *error) {
   const struct study *study = rounds->study;
   for (size_t i = 0; !rounds->quiet && i < study->ladder_count; i++) {
@@ -330,11 +331,10 @@ static status tell_replaced(const struct rounds *rounds, struct store *store, st
         before = row.n;
     TRY(answer_end(&levels));
     if (before > ladder->seeds && ladder->seeds > 0)
-      fprintf(
-          stderr,
-          "clast: the study of %s in this store had %lld seeds; this one has %lld and takes its place. --seeds %lld "
-          "keeps as many\n",
-          knob, (long long)before, (long long)ladder->seeds, (long long)before);
+      fprintf(stderr,
+              "clast: the study of %s in this store has %lld seeds, this one %lld: it takes its place only if it has "
+              "another level. --seeds %lld studies with as many\n",
+              knob, (long long)before, (long long)ladder->seeds, (long long)before);
   }
   return STATUS_OK;
 }

@@ -435,7 +435,9 @@ static status print_plan(struct find *find, const struct find_request *request, 
   if (!json) {
     printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
     if (find->answered)
-      puts("The store has all of this search; a narrower interval or a larger --max-runs goes on.");
+      puts(find->found.kind == CROSSING_FOUND || find->found.kind == CROSSING_OPEN
+               ? "The store has all of this search; a narrower interval or a larger --max-runs goes on."
+               : "The store has all of this search, and its answer: the same command without --plan prints it.");
     else if (find->runs > 0)
       printf("The store has its first %zu runs; this is the cost of the others, near the crossing.\n", find->runs);
     else

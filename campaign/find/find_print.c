@@ -309,10 +309,12 @@ static void write_more(const struct find *find) {
       before = &find->width[i];
   if (find->found.kind == CROSSING_FOUND && width > find_widest(find)) {
     const size_t needed = crossing_runs_for(find->runs, width, find_widest(find));
-    text_append(text, SENTENCE, " The width asked for needs about %zu runs, if it falls as the root of their number",
-                needed);
     if (needed > FIND_MOST_RUNS)
-      text_append(text, SENTENCE, " (a search may have %d)", FIND_MOST_RUNS);
+      text_append(text, SENTENCE, " The width asked for needs more than the %d runs that a search may have",
+                  FIND_MOST_RUNS);
+    else
+      text_append(text, SENTENCE, " The width asked for needs about %zu runs", needed);
+    text_append(text, SENTENCE, ", if it falls as the root of their number");
     text_append(text, SENTENCE, ".");
   }
   if (find->found.kind == CROSSING_FOUND && before && width > LITTLE * before->width)
@@ -332,7 +334,7 @@ static status tell_others(const struct find *find, struct error *error) {
   const int64_t others = runs - (int64_t)find->runs; /* failed runs count as ours */
   if (others > 0)
     words_print(stderr, "",
-                "clast: %lld runs of other searches along %s are left out: a search uses the runs at its own places "
+                "clast: %lld other runs at places of %s are left out: a search uses the runs at its own places "
                 "and seeds alone, so that it answers the same whatever the store has",
                 (long long)others, find->input->path);
   return STATUS_OK;

@@ -49,12 +49,13 @@ static status choose_campaigns(struct store *store, const char *campaign, struct
 #define OF_PEOPLE                                                                                                      \
   "SELECT point_id FROM main.campaign_point JOIN main.campaign USING (campaign_id) WHERE NOT " CAMPAIGN_IS_ROUND
 /* Points with a campaign, but none that a person wrote, leave; and points without a campaign and without runs, which a
- * study that was stopped had planned. */
+ * study that was stopped had planned: these are not told. */
 static status choose_campaigns_alone(struct store *store, struct error *error) {
   TRY(sql_execute(store->db,
-                  "DELETE FROM temp.chosen_point AS p WHERE (point_id IN (SELECT point_id FROM main.campaign_point) OR "
-                  "NOT EXISTS (SELECT 1 FROM main.run r WHERE r.point_id = p.point_id)) AND point_id NOT IN (" OF_PEOPLE
-                  ") AND EXISTS (" OF_PEOPLE ")",
+                  "DELETE FROM temp.chosen_point AS p WHERE NOT EXISTS (SELECT 1 FROM main.run r WHERE r.point_id = "
+                  "p.point_id) AND point_id NOT IN (SELECT point_id FROM main.campaign_point) AND EXISTS (" OF_PEOPLE
+                  "); DELETE FROM temp.chosen_point WHERE point_id IN (SELECT point_id FROM main.campaign_point) AND "
+                  "point_id NOT IN (" OF_PEOPLE ") AND EXISTS (" OF_PEOPLE ")",
                   doing, error));
   store->left_out = sqlite3_changes64(store->db);
   return STATUS_OK;

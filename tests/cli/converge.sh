@@ -177,7 +177,9 @@ cp tiny.db planned.db
 sqlite3 planned.db "insert into point select 1000, randomblob(16), null, engine, scene_name, scene from point limit 1;
   insert into point_input select 1000, path, value from point_input where point_id = (select min(point_id) from point)"
 expect 0 "$clast" map planned.db planned.png
-says "left out: 5 points"
+says "left out: 4 points"
+expect 0 "$clast" estimates planned.db --csv
+same "$(grep -c '^1000,' out)" 0 "rows of the planned point"
 
 # Accuracy on demand: without a study the command is named; then the cheapest settings are taken, and their seeds run.
 cat >sharp.yaml <<'YAML'
@@ -477,9 +479,10 @@ prints "Left out, as their runs are in doubt (!) where the scene's own are not: 
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
 expect 0 "$clast" status coarse.db
 same "$(awk '/coarse grains/ { print $5, $6, $7 }' out)" "4 12 12" "points and runs of two studies with common levels"
-# A study with fewer seeds takes the place of a larger one, and says so.
+# A study with fewer seeds and the same levels leaves the larger one in the store; one with another level takes its place.
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm --seeds 2 --within off
-says "the study of grains in this store had 3 seeds; this one has 2 and takes its place. --seeds 3 keeps as many"
+says "the study of grains in this store has 3 seeds, this one 2: it takes its place only if it has another level. --seeds 3"
+same "$(number coarse.db "select max(n) from convergence where knob = 'grains' and base")" 3 "seeds of the study that the store keeps"
 ! grep -q "0 more runs" err || fail "nothing to do is told: $(cat err)"
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
 ! grep -q "takes its place" err || fail "a larger study replaces: $(cat err)"
@@ -558,4 +561,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 138
+done_after 141

@@ -96,10 +96,10 @@ same "$(number killed.db 'select count(*) from run')" "$runs" "runs after a kill
 expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.001 --max-runs "$((runs + 8))"
 says "$runs found in the store"; tr '\n' ' ' <out >line; mv line out
 prints "a larger --max-runs goes on. The width asked for needs about "
-grep -q "other searches" err && fail "no other search"
+grep -q "other runs" err && fail "no other search"
 # Other answers.
 expect 0 "$clast" find disc.yaml --level 1
-says "$(($(number disc.db "select count(*) from run") - 20)) runs of other searches along threshold.strain are left out"
+says "$(($(number disc.db "select count(*) from run") - 20)) other runs at places of threshold.strain are left out"
 prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the"
 grep -q "runs: between" err && fail "an interval of no crossing"
 grep -q "holds the level" err && fail "no mean is above 1"
