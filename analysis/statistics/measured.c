@@ -234,27 +234,38 @@ static double share_of_draws(const struct measured *m, size_t first, const struc
   return drawn ? (double)far / (double)drawn : (double)NAN;
 }
 
+/* Share of single runs that are far. */
+static double share_of_runs(const struct measured *m, size_t first, const struct pooled_runs *runs,
+                            const struct sorted *pool, double *room, const struct measured_match *match) {
+  size_t far = 0;
+  for (size_t r = 0; r < runs->count; r++) {
+    const struct sorted run = sort_runs(runs, 1, &r, match->from, m->weighed, room);
+    if (run.n >= 2 && run.n < pool->n)
+      far += is_far(m, first, &run, pool, match->distance);
+  }
+  return (double)far / (double)match->judged;
+}
+
 static void compare_runs(const struct measured *m, size_t first, const struct pooled_runs *runs,
                          const struct sorted *pool, double *room, size_t *which, struct measured_match *out) {
   struct sample_moments moments = {0};
-  size_t far = 0;
   for (size_t r = 0; r < runs->count; r++) {
     which[r] = r;
     const struct sorted run = sort_runs(runs, 1, &r, out->from, m->weighed, room);
     sample_add(&moments, (double)run.n);
-    if (run.n < 2 || run.n == pool->n)
-      continue;
-    out->judged++;
-    far += is_far(m, first, &run, pool, out->distance);
+    out->judged += run.n >= 2 && run.n < pool->n;
   }
   out->simulated = sample_summarise_moments(&moments, 0.95);
-  const double times = out->fragments / out->simulated.mean; /* NaN for a sieve table */
-  out->together = times >= 1.5 && times < (double)SIZE_MAX ? (size_t)(times + 0.5) : 1;
-  out->needed = out->together > MATCH_RUNS / MATCH_GROUPS ? MATCH_GROUPS * out->together : MATCH_RUNS;
+  const double times = floor(out->fragments / out->simulated.mean); /* NaN for a sieve table */
+  if (out->simulated.mean < MATCH_SMALL && times >= 2) {
+    out->needed = (size_t)fmin(fmax(MATCH_GROUPS * times, MATCH_RUNS), 1e9);
+    if (runs->count >= out->needed)
+      out->together = (size_t)times;
+  }
   if (out->judged < out->needed || !isfinite(out->distance))
     return;
   out->share = out->together > 1 ? share_of_draws(m, first, runs, pool, room, which, out)
-                                 : (double)far / (double)out->judged;
+                                 : share_of_runs(m, first, runs, pool, room, out);
 }
 
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,

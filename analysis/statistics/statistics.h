@@ -539,7 +539,7 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
 /* Agreement of runs with measured data, for fragments of at least `complete` only. Shapes are compared, each normalised
  * by its own number of fragments; the numbers are given separately. Sieve tables: shares of the mass are compared
  * instead of numbers. */
-enum { MATCH_RUNS = 20, MATCH_GROUPS = 4 };
+enum { MATCH_RUNS = 20, MATCH_GROUPS = 4, MATCH_SMALL = 20 };
 struct measured_match {
   double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
   double fragments; /* number of measured fragments; NaN for a sieve table */
@@ -547,16 +547,17 @@ struct measured_match {
   double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than
                       two measured fragments or classes, which have no shape */
   /* Of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so a share below
-   * 0.05 is evidence against the pool. Where a run has far fewer fragments than were measured, its own distance is
-   * chance: then of draws of `together` runs, which have as many. NaN: fewer than `needed` runs are judged: so few can
-   * be all nearer by chance. */
+   * 0.05 is evidence against the pool. The distance of a run with fewer than MATCH_SMALL fragments is mostly chance. If
+   * two or more such runs have no more fragments together than were measured, the share is that of draws of so many
+   * runs. They hide what differs between runs beside the chance of few fragments. NaN: fewer than `needed` runs are
+   * judged: so few can be all nearer by chance. */
   double share;
   double log_likelihood; /* of the measured fragments in classes of mass (the store's bins, or the thresholds), if each
                             is drawn from the pool; half a fragment is added to each class. Compare it between pools
                             with the same `complete`. NaN for a sieve table */
   size_t judged;         /* runs with two or more fragments from `from` on */
   size_t needed;         /* MATCH_RUNS, or MATCH_GROUPS times `together` */
-  size_t together;       /* runs that have as many fragments as were measured; 1 for a sieve table */
+  size_t together;       /* runs of a draw; 1: single runs are judged */
 };
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
                         struct measured_match *out, struct error *error);

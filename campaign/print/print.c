@@ -353,8 +353,8 @@ static void tell_shape(size_t pools, size_t agree, size_t differ, const struct m
   const double share = match->share;
   char joined[120] = "of the runs are as far from the other runs as the measured spectrum is";
   if (match->together > 1)
-    snprintf(joined, sizeof joined,
-             "of draws of %zu runs, which have as many fragments, are as far from the other runs", match->together);
+    snprintf(joined, sizeof joined, "of draws of %zu runs (one has too few fragments) are as far from the other runs",
+             match->together);
   if (agree + differ == 0 && nothing)
     puts("no verdict on the shape: no distance can be told, see below");
   else if (agree + differ == 0)
@@ -451,7 +451,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
         "clast: the measured and all simulated spectra are complete from %.3g %s on; from: %s. distance: "
         "Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the "
         "others as "
-        "the measured one, or of as many runs together as have its number of fragments (below 0.05 speaks against "
+        "the measured one, or of draws of several runs of few fragments (below 0.05 speaks against "
         "the point; -: too few runs of two fragments). One measured fragment or class has no shape, and no distance\n",
         complete, kg, measured->single ? "this mass" : "the first measured class there",
         measured->weighed ? "the shares of mass" : "the shapes");

@@ -166,6 +166,8 @@ static status read_json(struct reading *r, const char *file, const char *text, s
   char begins[40];
   const char *from = text + strspn(text, " \t\r\n");
   const status parsed = document_parse(file, text, size, &document, &why);
+  if (!*from)
+    return status_fail(r->error, STATUS_CONTENT, "%.100s is empty: expected JSON", file);
   if (parsed == STATUS_CONTENT && *from != '{') { /* the reader of YAML expects other words */
     snprintf(begins, sizeof begins, "%.*s", (int)strcspn(from, "\n"), from);
     text_make_plain(begins, "");

@@ -14,6 +14,8 @@
 #ifdef __x86_64__
 #pragma GCC push_options
 #pragma GCC target("arch=x86-64-v4")
+#endif
+#ifdef __AVX512F__ /* clang leaves the line before out: then a quotient is a division */
 #define LANES 8
 #include "engine/dem/step/lanes.h"
 
@@ -84,7 +86,7 @@ static void quotients_by_nothing_are_infinite(void **unused) {
   double q[8];
   lanes_store(q, lanes_quotient(lanes_load(a), lanes_load(b)));
   for (int lane = 0; lane < 3; lane++)
-    assert_true(isinf(q[lane]));
+    assert_true(q[lane] == (double)INFINITY);
   for (int lane = 3; lane < 8; lane++)
     assert_true(q[lane] == a[lane] / b[lane]);
 }
@@ -96,14 +98,16 @@ static int run(void) {
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
+#endif
+#ifdef __x86_64__
 #pragma GCC pop_options
 #endif
 
 int main(void) {
-#ifdef __x86_64__
+#ifdef LANES
   if (cpu_class_choose() == CPU_V4)
     return run();
 #endif
-  puts("skipped: this CPU has no AVX-512 (class v4)");
+  puts("skipped: this CPU or this compiler has no AVX-512 (class v4)");
   return 77;
 }

@@ -345,6 +345,26 @@ static void a_specimen_with_more_fragments_than_a_run(void **state) {
   assert_true(differ[1] >= CASES / 2);
 }
 
+/* A count from a stranger's file that no number of runs reaches gives no verdict. Runs of 1.6 specimens are not joined:
+ * a draw with more fragments than the specimen is nearer by chance. */
+static void runs_are_joined_with_care(void **state) {
+  (void)state;
+  enum { RUNS = 40 };
+  size_t first[RUNS + 1];
+  double masses[4 * RUNS];
+  one_to_four(RUNS, first, masses);
+  const struct pooled_runs runs = {RUNS, first, masses};
+  struct measured_match match;
+  static const double counts[] = {6.4, 8, 40, 44, 0x1p63, 1e19, 1e300};
+  static const size_t together[] = {1, 2, 10, 1, 1, 1, 1};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    const struct measured m = {.n = 2, .mass = (double[]){1, 3}, .above = (double[]){counts[i], 2}};
+    assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
+    assert_int_equal(match.together, together[i]);
+    assert_true(isnan(match.share) == (i > 2) && match.needed >= MATCH_RUNS);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds),
                                      cmocka_unit_test(two_dimensions),
@@ -353,6 +373,7 @@ int main(void) {
                                      cmocka_unit_test(sieves),
                                      cmocka_unit_test(distances),
                                      cmocka_unit_test(a_run_among_runs),
-                                     cmocka_unit_test(a_specimen_with_more_fragments_than_a_run)};
+                                     cmocka_unit_test(a_specimen_with_more_fragments_than_a_run),
+                                     cmocka_unit_test(runs_are_joined_with_care)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

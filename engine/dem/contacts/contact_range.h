@@ -336,8 +336,10 @@ LANES_INLINE void near_prefetch(const struct dem_system *s, size_t k) {
     __builtin_prefetch(&s->pair_contact[pair]);
     __builtin_prefetch(&s->alive[pair]);
   }
-  const uint32_t *grain = code[OUTLINES] & DEM_FROM_BOND ? s->pair[s->lane_pair[code[OUTLINES] & ~DEM_FROM_BOND]]
-                                                         : &s->near_pair[code[OUTLINES]].first;
+  const uint32_t slot = code[OUTLINES] & ~DEM_FROM_BOND;
+  const bool bond = code[OUTLINES] & DEM_FROM_BOND;
+  const uint32_t grain[2] = {bond ? s->pair[s->lane_pair[slot]][0] : s->near_pair[slot].first,
+                             bond ? s->pair[s->lane_pair[slot]][1] : s->near_pair[slot].second};
   for (int end = 0; end < 2; end++) {
     __builtin_prefetch(&s->outline_x[s->first_vertex[grain[end]]]);
     __builtin_prefetch(&s->outline_y[s->first_vertex[grain[end]]]);
