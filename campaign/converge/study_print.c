@@ -249,6 +249,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   if (isfinite(told->error))
     fprintf(out, " Error of the resolution: %s", study_show_error(told->error, told->at_least, text));
   double rest = told->error;
+  const double farther = fmax(told->mean - range.least, range.most - told->mean); /* end of what it can be */
   const char *before = " (";
   for (size_t i = 0; i < count; i++) {
     const struct convergence_row *row = i == knob ? told : NULL;
@@ -262,7 +263,8 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     rest -= row->resolution;
   }
   if (rest < -1e-9 * told->error)
-    fprintf(out, told->error < 0.5 ? "; a larger study in the store tells less" : "; a share cannot move farther");
+    fprintf(out, fabs(told->error - farther) <= 1e-9 * farther ? "; a share cannot move farther"
+                                                               : "; a larger study in the store tells less");
   else if (rest > 1e-9 * told->error) {
     fprintf(out, "%sother or larger studies %s", before, study_show_error(rest, false, text));
     before = ", ";

@@ -314,8 +314,7 @@ static void write_more(const struct find *find) {
                   FIND_MOST_RUNS);
     else
       text_append(text, SENTENCE, " The width asked for needs about %zu runs", needed);
-    text_append(text, SENTENCE, ", if it falls as the root of their number");
-    text_append(text, SENTENCE, ".");
+    text_append(text, SENTENCE, ", if the width falls as the root of their number.");
   }
   if (find->found.kind == CROSSING_FOUND && before && width > LITTLE * before->width)
     text_append(text, SENTENCE, " From %zu to %zu runs it became only %.0f %% narrower, so it may take many more.",
@@ -323,7 +322,8 @@ static void write_more(const struct find *find) {
   words_print(stdout, "", "%s", text);
 }
 
-/* Runs of other searches along the input: another level, share or bracket. */
+/* Runs at the places of searches along the input that this one does not take: of a search for another level, share or
+ * bracket, or of a campaign. */
 static status tell_others(const struct find *find, struct error *error) {
   char name[2 * FIELD_TEXT_SIZE];
   int64_t runs = 0;

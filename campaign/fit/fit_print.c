@@ -440,7 +440,8 @@ static void tell_shared_seeds(const struct fit *fit, FILE *out) {
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     const struct seed_scatter *scatter = &fit->surfaces.scatter[k];
     const double free = (double)scatter->freedom / (1 + ((double)fit->points - 1) * scatter->shared * scatter->shared);
-    if (fit->exact[k] || !(free < least))
+    if (fit->exact[k] || !(free < least) ||
+        !(2 * free < (double)scatter->freedom)) /* else the seeds are not the cause */
       continue;
     least = free;
     datum = k;
@@ -452,7 +453,7 @@ static void tell_shared_seeds(const struct fit *fit, FILE *out) {
   words_print(
       out, "",
       "SEEDS: all points share %zu seeds, which move %s alike (correlation %.2g). So its scatter over seeds is "
-      "known from about %.2g specimens, and may be %.1g times as large as sd_seeds; the intervals do not hold "
+      "known from about %.2g specimens, and may be %.2g times as large as sd_seeds; the intervals do not hold "
       "that. Give each point seeds of its own: `seeds: {per_point: %zu, independent: true}`, and another store.",
       fit->replicates, label, fit->surfaces.scatter[datum].shared, 1 + least, sample_deviation_factor(least),
       fit->replicates);

@@ -323,13 +323,15 @@ static const struct condition conditions[] = {
     CONDITION("seedless", .fact = "all seeds are the same run, as the program gets neither {{seed}} nor {{small_seed}}",
               .doubt = "intervals over seeds are of equal runs", .reason = "a program has no other word of the seed",
               .remedy = "give it one of them, or take one seed for each point", .results = "", .before = seedless),
-    CONDITION("elementless",
-              .fact =
-                  "the lightest fragment of each run counts as its element, as fragments: element_mass is not given",
-              .doubt = "the windows of exponents hang on one fragment of each run",
-              .reason = "a program tells no smallest piece",
-              .remedy = "give the mass of a grid cell, of a sieve's opening, or the least mass that the model means",
-              .results = "", .before = elementless),
+    CONDITION(
+        "elementless",
+        .fact = "the lightest fragment of each run counts as its element, because `element_mass` of `fragments` is not "
+                "given",
+        .doubt = "the windows of exponents hang on one fragment of each run",
+        .reason = "a program tells no smallest piece",
+        .remedy =
+            "give the mass of a grid cell, of a sieve's opening, or the smallest mass for which the model is meant",
+        .results = "", .before = elementless),
     {.word = NULL},
 };
 

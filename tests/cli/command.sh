@@ -77,7 +77,7 @@ expect 0 "$clast" run mark-runs.yaml $word
 sed 's/, "{{seed}}"//; s/^  results:/  fragments: {name: m}\n&/' mark.yaml >deaf.yaml
 sed 's/mark/deaf/' mark-runs.yaml >deaf-runs.yaml
 expect 0 "$clast" plan deaf-runs.yaml
-prints "all seeds are the same run"; prints "element_mass is not given"
+prints "all seeds are the same run"; prints "the lightest fragment of each run counts as its element"
 rm -f touched
 
 # ---- scenes that are wrong ----

@@ -125,8 +125,7 @@ LANES_INLINE lanes_d lanes_lower(lanes_condition where, lanes_d value, lanes_d t
 /* a / b, the same bits as the division, without the divider of the CPU: a loop that divides often runs faster when
  * half of its quotients come from here, because both ways then work at the same time. Newton's steps for 1/b, then two
  * corrections of the quotient by its remainder, which the FMA gives exactly (Markstein, IBM J. Res. Dev. 34, 111,
- * 1990). +infinity where b is 0. Not for |a| or |b| below
- * 1e-290 or above 1e290, where it may be NaN. */
+ * 1990). +infinity where b is 0. |a| and |b| are 0 or from 1e-290 to 1e290: beyond, it may be NaN. */
 LANES_INLINE lanes_d lanes_quotient(lanes_d a, lanes_d b) {
 #if defined __AVX512F__ && LANES == 8
   const __m512d n = (__m512d)a, d = (__m512d)b, one = _mm512_set1_pd(1.0);
