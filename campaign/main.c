@@ -18,7 +18,6 @@ static bool colour(void) {
 
 /* Prints an error. A report on a document has its own "file:line:col: error:" lines and is printed as it is. */
 static void print_error(struct error *error) {
-  words_legend(false);
   text_make_plain(error->message, "\n\t"); /* it may quote a file from an untrusted source */
   size_t line = strcspn(error->message, "\n");
   const char *located = strstr(error->message, ": error: ");

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "campaign/terminal/table.h"
-#include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 
@@ -124,7 +123,6 @@ static void draw_bar(struct progress *progress, const struct progress_state *sta
 }
 
 void progress_update(struct progress *progress, const struct progress_state *state, double now, bool last) {
-  words_legend(false);
   if (progress->style == PROGRESS_BAR) {
     if (!last && now - progress->last_time < 0.1)
       return;

@@ -476,6 +476,8 @@ static bool fits(const struct table *table) {
 /* Prints the kept rows, in as many parts as it takes. */
 static void print_kept(struct table *table) {
   const bool first = !table->laid_out || !fits(table);
+  if (table->out == stdout)
+    words_before_table();
   OWNED size_t *list = malloc((table->column_count + 1) * sizeof *list);
   if (!list) {
     fail(table);
@@ -812,8 +814,6 @@ status table_end(struct table *table, struct error *error) {
     errno = 0;
     (void)fflush(table->out); /* sets the stream's error flag */
     check_output(table);
-    if (table->people && table->out == stdout)
-      words_legend(true);
     if (table->people && !table->broken && table->format != TABLE_BARE)
       tell_left_out(table);
   }

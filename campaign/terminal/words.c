@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "schemas/text.h"
@@ -22,7 +23,18 @@ void words_print(FILE *out, const char *head, const char *format, ...) {
   text_wrap(text, strlen(head), strlen(head), WIDTH, out);
 }
 
-static bool are_apart, is_legend; /* words_wrap_stderr(), words_legend() */
+static bool are_apart, was_table; /* words_wrap_stderr(); the last output was a table */
+
+/* Before output on the other stream than the last one. */
+static void turn(bool table) {
+  if (are_apart && table != was_table)
+    nanosleep(&(struct timespec){.tv_nsec = 200000000}, NULL);
+  was_table = table;
+}
+
+void words_before_table(void) {
+  turn(true);
+}
 
 struct line {
   size_t column;
@@ -33,13 +45,9 @@ struct line {
   bool located; /* an error of a document: indented lines below it are an excerpt */
 };
 
-static int file_of_stderr(void) {
-  return is_legend ? STDOUT_FILENO : STDERR_FILENO;
-}
-
 static size_t columns_of_stderr(void) {
   struct winsize size;
-  const bool known = ioctl(file_of_stderr(), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known && size.ws_col < WIDTH ? size.ws_col : WIDTH;
 }
 
@@ -88,8 +96,7 @@ static void wrap_piece(struct line *line, char *text, size_t size) {
 static ssize_t write_wrapped(void *of, const char *text, size_t size) {
   struct line *line = of;
   char piece[PIECE + 2];
-  if (is_legend)
-    (void)fflush(stdout); /* a later table_flush() reports a failure */
+  turn(false);
   for (size_t done = 0; done < size;) {
     const size_t taken = size - done < PIECE ? size - done : PIECE;
     size_t length = 0;
@@ -103,17 +110,13 @@ static ssize_t write_wrapped(void *of, const char *text, size_t size) {
     length -= line->blank;
     wrap_piece(line, piece, length);
     for (size_t written = 0; written < length;) {
-      const ssize_t n = write(file_of_stderr(), piece + written, length - written);
+      const ssize_t n = write(STDERR_FILENO, piece + written, length - written);
       if (n <= 0)
         return -1;
       written += (size_t)n;
     }
   }
   return (ssize_t)size;
-}
-
-void words_legend(bool legend) {
-  is_legend = are_apart && legend;
 }
 
 void words_wrap_stderr(bool apart) {

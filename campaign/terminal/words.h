@@ -13,11 +13,10 @@ void words_print(FILE *out, const char *head, const char *format, ...) __attribu
  * which programs read, and the lines of a document below it. stderr has no fileno() from now on.
  *
  * apart: a launcher such as mpirun forwards stdout and stderr apart, so that the legend of a table could get into the
- * middle of it. The legend then goes to stdout (words_legend()). */
+ * middle of it. Between a table and words there are then 0.2 s, in which the launcher forwards the first. */
 void words_wrap_stderr(bool apart);
 
-/* True, after a table for people on stdout: what is printed on stderr is its legend. False: it is an error or
- * progress. */
-void words_legend(bool legend);
+/* Call before a table for people is printed on stdout, and flush stdout after it. */
+void words_before_table(void);
 
 #endif
