@@ -188,19 +188,45 @@ size_t scatter_runs_of_rule(double mean, double deviation, double half_width, bo
   return fewest(&wanted, SAMPLE_FIRST, SAMPLE_BATCH);
 }
 
-struct scatter_histogram scatter_histogram_of(const struct scatter *s) {
-  struct scatter_histogram h = {0};
-  if (s->n == 0)
-    return h;
-  const double least = s->sorted[0], range = s->sorted[s->n - 1] - least;
+static double range_of(const struct scatter *s) {
+  return s->sorted[s->n - 1] - s->sorted[0];
+}
+
+static double width_of(const struct scatter *s) {
+  const double least = s->sorted[0], range = range_of(s);
   double width = 2 * (s->quantile[3].value - s->quantile[1].value) / cbrt((double)s->n);
   if (!(width > range / (SCATTER_BINS - 2)))
     width = range / (SCATTER_BINS - 2);
   if (!(width > 0)) /* all values are equal */
     width = fabs(least) > 0 ? fabs(least) / 10 : 1;
   const double power = pow(10, floor(log10(width))), rest = width / power;
-  h.width = power * (rest <= 1 ? 1 : rest <= 2 ? 2 : rest <= 5 ? 5 : 10);
-  h.from = floor(least / h.width) * h.width;
+  return power * (rest <= 1 ? 1 : rest <= 2 ? 2 : rest <= 5 ? 5 : 10);
+}
+
+double scatter_width_of_all(size_t count, const struct scatter *s) {
+  OWNED double *own = memory_small(count, sizeof *own);
+  size_t differ = 0;
+  double least = 0, equal = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (s[i].n > 0 && range_of(&s[i]) > 0)
+      own[differ++] = width_of(&s[i]);
+    else if (s[i].n > 0)
+      equal = fmax(equal, width_of(&s[i]));
+    least = fmax(least, s[i].n > 0 ? range_of(&s[i]) / (SCATTER_BINS - 2) : 0);
+  }
+  qsort(own, differ, sizeof *own, sample_ascending);
+  size_t i = differ / 2;
+  while (i < differ && own[i] < least)
+    i++;
+  return i < differ ? own[i] : equal;
+}
+
+struct scatter_histogram scatter_histogram_of(const struct scatter *s, double width) {
+  struct scatter_histogram h = {0};
+  if (s->n == 0)
+    return h;
+  h.width = width > 0 ? width : width_of(s);
+  h.from = floor(s->sorted[0] / h.width) * h.width;
   for (size_t i = 0; i < s->n; i++) {
     double bin = floor((s->sorted[i] - h.from) / h.width);
     bin = fmin(fmax(bin, 0), SCATTER_BINS - 1);

@@ -634,7 +634,11 @@ struct scatter_histogram {
   double from, width;
   size_t count[SCATTER_BINS];
 };
-struct scatter_histogram scatter_histogram_of(const struct scatter *scatter);
+/* width: of a bin; 0: as above. */
+struct scatter_histogram scatter_histogram_of(const struct scatter *scatter, double width);
+/* One width for the histograms of several samples in one panel: the median of their own widths, of the samples whose
+ * values differ; larger if a sample had too many bins. */
+double scatter_width_of_all(size_t count, const struct scatter *scatter);
 
 /* The split of a variance over points and runs into inputs and seeds. y(point, run) is a table. Run r has the same seed
  * at all points, or all seeds are independent. Products of different runs have no common error from seeds, so the parts

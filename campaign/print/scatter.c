@@ -119,7 +119,7 @@ static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *e
   SCATTER scatter = {0};
   char mark[UNCERTAINTY_TEXT];
   TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
-  const struct scatter_histogram histogram = scatter_histogram_of(&scatter);
+  const struct scatter_histogram histogram = scatter_histogram_of(&scatter, 0);
   uncertainty_mark(&pool->doubts, mark);
   printf("%s, %zu runs%s\n", pool->label, scatter.n, mark);
   text_plot_histogram(stdout, COLUMNS, !ascii, &histogram);
@@ -176,11 +176,14 @@ status print_scatter_picture(struct store *store, const struct scatter_choice *c
     }
     snprintf(samples.label[samples.count++], sizeof samples.label[0], "%s, %zu runs%s%s", pool->label, scatter->n,
              isfinite(scatter->between) ? ", two modes" : "", pool->doubts.doubtful ? " !" : "");
-    sample[i] = (struct picture_sample){samples.label[i], scatter->n, scatter->sorted, scatter_histogram_of(scatter)};
+    sample[i] = (struct picture_sample){samples.label[i], scatter->n, scatter->sorted, {0}};
   }
   TRY(ask_pools_end(&pools));
   if (samples.count == 0)
     return quantity_no_values(store, choice->quantity, error);
+  const double width = scatter_width_of_all(samples.count, samples.scatter); /* or heights could not be compared */
+  for (size_t i = 0; i < samples.count; i++)
+    sample[i].histogram = scatter_histogram_of(&samples.scatter[i], width);
   charts_doubts(&doubts, caption, sizeof caption);
   const struct picture_words words = {"Scatter of the runs", *caption ? caption : NULL, axis, NULL};
   TRY(picture_scatter(page, &words, samples.count, sample, error));

@@ -30,7 +30,7 @@ static void known_samples(void **state) {
   /* Median of 101: P(B <= 40) = 0.023, P(B <= 41) = 0.037 for B(101, 1/2): from the 41st to the 61st value. */
   assert_true(s.quantile[2].low == 40 && s.quantile[2].high == 60);
   assert_true(isnan(s.between) && s.dip_share > 0.5);
-  const struct scatter_histogram h = scatter_histogram_of(&s);
+  const struct scatter_histogram h = scatter_histogram_of(&s, 0);
   size_t sum = 0;
   for (size_t b = 0; b < h.bins; b++)
     sum += h.count[b];
@@ -43,15 +43,40 @@ static void known_samples(void **state) {
   assert_true(isnan(s.skewness)); /* few values tell none */
   scatter_release(&s);
   assert_int_equal(scatter_make(0, few, &s, NULL), STATUS_OK);
-  assert_true(s.n == 0 && isnan(s.mean.mean) && isnan(s.quantile[0].value) && scatter_histogram_of(&s).bins == 0);
+  assert_true(s.n == 0 && isnan(s.mean.mean) && isnan(s.quantile[0].value) && scatter_histogram_of(&s, 0).bins == 0);
   scatter_release(&s);
   double same[30]; /* 30 times 1/30 is not 1 in floating point */
   for (int i = 0; i < 30; i++)
     same[i] = 1;
   assert_int_equal(scatter_make(30, same, &s, NULL), STATUS_OK);
-  assert_true(s.mean.standard_deviation == 0 && isnan(s.skewness) && scatter_histogram_of(&s).bins == 1);
+  assert_true(s.mean.standard_deviation == 0 && isnan(s.skewness) && scatter_histogram_of(&s, 0).bins == 1);
   assert_true(isnan(s.mean.half_width) && isnan(s.mean.low) && isnan(s.mean.high));
   scatter_release(&s);
+}
+
+/* Samples in one panel have bins of one width: the median of their own, of those whose values differ. */
+static void one_width(void **state) {
+  (void)state;
+  double x[3][100];
+  struct scatter s[4];
+  const double alike[3] = {20, 20, 20};
+  for (int i = 0; i < 100; i++)
+    for (int k = 0; k < 3; k++)
+      x[k][i] = i * pow(10, k - 2);
+  for (int k = 0; k < 3; k++)
+    assert_int_equal(scatter_make(100, x[k], &s[k], NULL), STATUS_OK);
+  assert_int_equal(scatter_make(3, alike, &s[3], NULL), STATUS_OK);
+  assert_true(scatter_histogram_of(&s[0], 0).width == 0.5 && scatter_histogram_of(&s[2], 0).width == 50);
+  assert_true(scatter_width_of_all(4, s) == 5 && scatter_width_of_all(1, s + 3) == 2);
+  const struct scatter_histogram h = scatter_histogram_of(&s[2], 5);
+  assert_true(h.width == 5 && h.bins == 20 && h.count[0] == 5 && h.count[19] == 5);
+  for (int k = 0; k < 100; k++)
+    x[2][k] *= 10; /* 0 to 990 has no room in 60 bins of 5 */
+  scatter_release(&s[2]);
+  assert_int_equal(scatter_make(100, x[2], &s[2], NULL), STATUS_OK);
+  assert_true(scatter_width_of_all(4, s) == 500);
+  for (int k = 0; k < 4; k++)
+    scatter_release(&s[k]);
 }
 
 static void two_modes(void **state) {
@@ -322,6 +347,7 @@ int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_deviation_of_few_values),
                                      cmocka_unit_test(known_samples),
+                                     cmocka_unit_test(one_width),
                                      cmocka_unit_test(two_modes),
                                      cmocka_unit_test(counts_in_few_steps),
                                      cmocka_unit_test(runs_for_an_interval),

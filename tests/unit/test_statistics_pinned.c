@@ -81,7 +81,7 @@ static void of_samples(void) {
         for (size_t q = 0; q < SCATTER_QUANTILES; q++)
           SAY("quantile", scatter_shares[q], scatter.quantile[q].value, scatter.quantile[q].low,
               scatter.quantile[q].high);
-        const struct scatter_histogram h = scatter_histogram_of(&scatter);
+        const struct scatter_histogram h = scatter_histogram_of(&scatter, 0);
         SAY("histogram", (double)h.bins, h.from, h.width, (double)h.count[0], (double)h.count[h.bins / 2]);
       }
       scatter_release(&scatter);

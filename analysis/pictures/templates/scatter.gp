@@ -1,7 +1,8 @@
 # Histograms above, distribution functions below. Blocks of the data: first the histograms (value, share of the runs),
 # then the distribution functions (value, share of the runs up to it).
 head = (1.8 + 1.5 * title_lines + 1.0 * caption_lines) * 18. / page_height
-foot = (62. + legend_height) / page_height
+legend = legend_height * (ending eq 'svg' ? 1.2 : 1.) + 12 # letters of SVG are taller
+foot = (58 + legend) / page_height
 tall = (1.0 - head - foot) / 2
 set lmargin at screen 100. / page_width
 set rmargin at screen 1 - 25. / page_width
@@ -25,8 +26,8 @@ set format x '%h'
 set xlabel x_label noenhanced
 set ylabel 'share of the runs up to here'
 set arrow 1 from graph 0, first 0.5 to graph 1, first 0.5 nohead dt 3 lc rgb 0x808080
-set key below left Left reverse samplen 2.5 maxcols legend_columns noenhanced
-set key title " \n " # room for the name of the axis
+set key at screen 100. / page_width, screen legend / page_height left top horizontal
+set key Left reverse samplen 2.5 maxcols legend_columns noenhanced
 plot for [i = 1:series] data index series + i - 1 using 1:2 with steps lc rgb colour[i] dt dash[i] lw 1.6 notitle, \
      for [i = 1:series] keyentry with lines lc rgb colour[i] dt dash[i] lw 2 title label[i]
 unset multiplot
