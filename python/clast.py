@@ -114,9 +114,15 @@ class Store:
             return pandas.DataFrame.from_records(cursor.fetchall(), columns=names)
         return [dict(zip(names, row)) for row in cursor]
 
-    def runs(self, counted=False):
-        """A row for each run: varied inputs, every result, state, times. counted: only those that enter statistics."""
-        return self.query("SELECT * FROM runs" + (" WHERE counts = 1" if counted else ""))
+    def _without(self, studies):
+        """SQL that is true of rows of a view, without those that only studies and searches (`clast converge`, `find`) have."""
+        has = any(row[1] == "study" for row in self.connection.execute("PRAGMA table_info(points)"))
+        return "TRUE" if studies or not has else "NOT study"
+
+    def runs(self, counted=False, studies=False):
+        """A row for each run: varied inputs, every result, state, times. counted: only those that enter statistics.
+        studies: also those that only studies and searches (`clast converge`, `find`) asked for."""
+        return self.query(f"SELECT * FROM runs WHERE {self._without(studies)}" + (" AND counts = 1" if counted else ""))
 
     def excluded(self):
         """The runs that a person left out of all statistics (`clast exclude`), with the date and the reason."""
@@ -125,22 +131,22 @@ class Store:
         return self.query("SELECT run_id, point_id, seed, excluded_at AS date, excluded AS reason FROM run WHERE "
                           "surplus > 1 ORDER BY run_id")
 
-    def points(self):
+    def points(self, studies=False):
         """A row for each point: varied inputs; n, excluded; _mean, _sd, _se, _hw95, _low95 and
         _high95 (95 % interval; _hw95 is None when all runs are equal to 14 digits) of the main results.
         runs() has all results; `clast stats STORE -Q NAME --csv` the means of any of them."""
-        return self.query("SELECT * FROM points")
+        return self.query(f"SELECT * FROM points WHERE {self._without(studies)}")
 
-    def spectra(self, point=None):
+    def spectra(self, point=None, studies=False):
         """A row for each point and mass bin: lower and upper edge (kg), fragments, mass, density F(m)."""
         if point is None:
-            return self.query("SELECT * FROM spectra")
+            return self.query(f"SELECT * FROM spectra WHERE {self._without(studies)}")
         return self.query("SELECT * FROM spectra WHERE point_id = ?", (int(point),))
 
-    def estimates(self, point=None):
+    def estimates(self, point=None, studies=False):
         """A row for each exponent of a point, over all of its runs."""
         where = "SELECT * FROM estimates WHERE run_id IS NULL"
-        return self.query(where) if point is None else self.query(where + " AND point_id = ?", (int(point),))
+        return self.query(f"{where} AND {self._without(studies)}") if point is None else self.query(where + " AND point_id = ?", (int(point),))
 
     def unit(self, column):
         """The SI unit of a column of the views; "" for a pure number or a text. KeyError: there is no such column."""
@@ -203,11 +209,12 @@ class Store:
     def cube(self):
         """(dimensions, coordinates, variables): what to_xarray() makes a Dataset from. Where the points are a full grid,
         the varied inputs are the dimensions; else there is one dimension, point_id. Of several results versions the
-        newest is taken."""
-        cursor = self.connection.execute("SELECT * FROM points ORDER BY point_id, results_version")
+        newest is taken. Points that only studies and searches have are left out."""
+        cursor = self.connection.execute(f"SELECT * FROM points WHERE {self._without(False)} ORDER BY point_id, "
+                                         "results_version")
         names = [column[0] for column in cursor.description]
         rows = list({row[names.index("point_id")]: row for row in cursor}.values())
-        axes = [name for name in self.axes() if name in names]
+        axes = [name for name in self.axes() if name in names and len({row[names.index(name)] for row in rows}) > 1]
         at = {name: names.index(name) for name in names}
         levels = {axis: sorted({row[at[axis]] for row in rows}, key=lambda value: (str(type(value)), value)) for axis in axes}
         places = {tuple(levels[axis].index(row[at[axis]]) for axis in axes): row for row in rows}
@@ -216,7 +223,7 @@ class Store:
         dimensions = axes if grid else ["point_id"]
         coordinates = levels if grid else {name: [row[at[name]] for row in rows] for name in ["point_id", *axes]}
         ordered = [places[place] for place in sorted(places)] if grid else rows
-        fixed = {"engine", "scene", *coordinates}
+        fixed = {"engine", "scene", "study", *coordinates}
         variables = {name: [row[at[name]] for row in ordered] for name in names if name not in fixed}
         return dimensions, coordinates, variables
 

@@ -410,6 +410,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
 
 CREATE VIEW runs AS -- every run with its varied inputs and all results of its engine
 SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,
+  (EXISTS (SELECT 1 FROM campaign WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND p.point_id NOT IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND (p.point_id IN (SELECT point_id FROM campaign_point) OR NOT EXISTS (SELECT 1 FROM run AS x WHERE x.point_id = p.point_id))) AS study,
   "r"."session_id" AS "session_id",
   "r"."results_version" AS "results_version",
   "r"."surplus" AS "surplus",
@@ -611,6 +612,7 @@ WITH first AS (
     max(iif('mean_fragment_mass' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e4, max(iif('mean_fragment_mass' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v4
   FROM resolution JOIN point USING (point_id) GROUP BY point_id, results_version)
 SELECT p.point_id, p.engine, p.scene_name AS scene,
+  (EXISTS (SELECT 1 FROM campaign WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND p.point_id NOT IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND (p.point_id IN (SELECT point_id FROM campaign_point) OR NOT EXISTS (SELECT 1 FROM run AS x WHERE x.point_id = p.point_id))) AS study,
   t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
   ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
   (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic', 'shapes')) AS doubtful,
@@ -642,6 +644,7 @@ FROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id
 
 CREATE VIEW spectra AS -- pooled fragment mass spectrum of every point
 SELECT p.point_id, p.engine, p.scene_name AS scene,
+  (EXISTS (SELECT 1 FROM campaign WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND p.point_id NOT IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND (p.point_id IN (SELECT point_id FROM campaign_point) OR NOT EXISTS (SELECT 1 FROM run AS x WHERE x.point_id = p.point_id))) AS study,
   s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,
   1.0 * s.count / t.runs AS count_mean,
   sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,
@@ -654,6 +657,7 @@ FROM point p JOIN point_total t ON t.point_id = p.point_id
 
 CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)
 SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,
+  (EXISTS (SELECT 1 FROM campaign WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND p.point_id NOT IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND (p.point_id IN (SELECT point_id FROM campaign_point) OR NOT EXISTS (SELECT 1 FROM run AS x WHERE x.point_id = p.point_id))) AS study,
   "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", e.results_version
 FROM (
   SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", r.results_version
@@ -947,6 +951,8 @@ INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, sh
 
 INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 0);
 
+INSERT INTO column_doc VALUES ('estimates', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
+
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 0);
@@ -1154,6 +1160,8 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_sd', '1', 'standard de
 INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard error of the mean: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
 
 INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
 
@@ -1731,6 +1739,8 @@ INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, 'above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 0);
@@ -1800,6 +1810,8 @@ INSERT INTO column_doc VALUES ('spectra', 'results_version', NULL, 'version of t
 INSERT INTO column_doc VALUES ('spectra', 'runs', '1', 'runs that count and have a fragment in the bin', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'scene', NULL, 'name of the scene the inputs started from', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'upper', 'kg', 'upper edge, outside the bin', 0);
 

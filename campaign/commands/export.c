@@ -24,6 +24,7 @@ static bool is_table(const char *name) {
 static status check(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const bool other = options->bits || options->cinema || options->crate;
+  const struct ask_choice *choice = &line->choice;
   const struct rule {
     bool broken;
     const char *text;
@@ -31,6 +32,8 @@ static status check(const struct command_line *line, struct error *error) {
       {options->csv + options->lines + options->bits + options->cinema + options->crate + options->dakota > 1,
        "--csv, --jsonl, --bits, --cinema, --crate and --dakota exclude each other"},
       {options->per && other, "--per excludes --bits, --cinema and --crate"},
+      {(choice->point || choice->campaign || choice->where) && !options->per && !options->csv,
+       "--point, --campaign and --where belong to --per and --csv: other forms have the whole store"},
       {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
       {(options->lines || options->dakota) && !options->per, "--jsonl and --dakota need --per run or --per point"},
       {!options->per && !options->csv && !other && line->count > 1 && is_table(line->arguments[1]),
@@ -53,6 +56,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
   const struct export_crate_options crate = {target, options->license, options->author};
+  if (!options->per && !options->csv)
+    TRY(ask_choose(store, &(struct ask_choice){0}, error)); /* the whole store */
   if (options->per)
     TRY(export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
                            options->dakota  ? EXPORT_TABULAR
@@ -88,5 +93,5 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL),
 };
 
-COMMAND(export, "the store", "STORE [TARGET]", COMMAND_OPTIONS(struct options, option_rows), .check = check,
-        .ask = ask);
+COMMAND(export, "the store", "STORE [TARGET]", COMMAND_OPTIONS(struct options, option_rows), .chooses_runs = true,
+        .check = check, .ask = ask);

@@ -27,14 +27,19 @@ static status read_parameters(const struct options *options, struct parameters *
   return STATUS_OK;
 }
 
-/* A table of SQL has no marks: says that runs are in doubt, unless the question asks for their words. */
-static status tell_doubts(struct store *store, const char *sql, struct error *error) {
-  double doubtful = 0;
-  if (strcasestr(sql, OUTCOME_NAME(warnings)) || strcasestr(sql, "doubtful") ||
-      !(strcasestr(sql, "run") || strcasestr(sql, "point") || strcasestr(sql, "result_")))
+/* A table of SQL has no marks: says that runs are in doubt, or of studies, unless the question asks for that. */
+static status tell_marks(struct store *store, const char *sql, struct error *error) {
+  double doubtful = 0, of_studies = 0;
+  if (!(strcasestr(sql, "run") || strcasestr(sql, "point") || strcasestr(sql, "result_")))
     return STATUS_OK;
-  TRY(ask_doubts_count(store, &doubtful, error));
-  if (doubtful > 0)
+  TRY(ask_doubts_count(store, &doubtful, &of_studies, error));
+  if (of_studies > 0 && !strcasestr(sql, "study") && !strcasestr(sql, "point_id ="))
+    fprintf(
+        stderr,
+        "clast: %.0f runs of this store are at points that only studies and searches have: `where not study` leaves "
+        "them out of the views\n",
+        of_studies);
+  if (doubtful > 0 && !strcasestr(sql, OUTCOME_NAME(warnings)) && !strcasestr(sql, "doubtful"))
     fprintf(stderr, "clast: %.0f runs of this store are in doubt: see columns doubtful and warnings of the view runs\n",
             doubtful);
   return STATUS_OK;
@@ -51,7 +56,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const char *sql = canned ? canned->sql : line->arguments[1];
   TRY(table_answer(answer_to_user(store, sql, options->with.count, parameters.all, (double)options->seconds, error),
                    canned != NULL, line->format, stdout));
-  return tell_doubts(store, sql, error);
+  return tell_marks(store, sql, error);
 }
 
 /* Lists the canned queries: name, parameters and meaning; for programs also the SQL. */

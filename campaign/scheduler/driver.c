@@ -41,7 +41,7 @@ struct driver {
                             when they are finished */
   size_t point_count;
   uint64_t expanded; /* design points taken */
-  struct seen *seen; /* ids of the points met */
+  struct seen *seen; /* ids of the points met; below 0: hashes of names */
   struct point_cost_model cost;
   struct sample_moments moments;    /* of the main quantity */
   int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
@@ -270,14 +270,14 @@ static void write_hidden(const struct scene *scene, const struct field *row, con
 }
 
 /* Warns of points in the store of an earlier form of this campaign, or of another campaign of the scene. The inputs
- * that differ become varied inputs of the store, so that tables show them and --by takes them. `id`: the first point.
- */
+ * that differ become varied inputs of the store, so that tables show them and --by takes them. */
 static status tell_hidden_inputs(struct driver *driver, const struct scene *scene, int64_t id, struct error *error) {
   enum { NAMED = 8 };
   const struct field *differs[LIMITS_AXES_OF_POOL];
   const struct field_table *inputs = scene->kind->inputs;
-  char names[2048] = "", text[2600];
+  char names[2048] = "", text[2600], campaign[40];
   size_t count = 0;
+  bool own = false;
   ANSWER hidden = ask_campaign_hidden_inputs(driver->scheduler->store, driver->summary.campaign_id, id, error);
   while (answer_next(&hidden)) {
     const struct field *row = field_find(inputs, answer_text(&hidden, 0), NULL);
@@ -287,6 +287,7 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
     if (!scene->given[row - inputs->rows] && scheduler_follows(answer_text(&hidden, 2), row))
       continue; /* it differs because others do */
     differs[count] = row;
+    own |= answer_integer(&hidden, 3);
     if (count++ < NAMED)
       write_hidden(scene, row, &theirs, names, sizeof names);
   }
@@ -295,15 +296,32 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
     TRY(scheduler_show_input(driver->scheduler->store, differs[i], error));
   if (count == 0 || driver->in_series) /* the campaigns of a series differ on purpose */
     return STATUS_OK;
+  snprintf(campaign, sizeof campaign, "campaign %lld", (long long)driver->summary.campaign_id);
   snprintf(
       text, sizeof text,
-      "warning: the store has other points of this campaign or scene: %s%s %s of this store from now on (--by). For "
-      "one campaign alone, name another store or ask with --campaign %lld",
+      "warning: the store has other points of this campaign or scene: %s%s %s of this store from now on (--by). For %s "
+      "alone, name another store or ask with --%s",
       names, count > NAMED ? " and more" : "",
-      count > 1 ? "differ, and are varied inputs" : "differs, and is a varied input",
-      (long long)driver->summary.campaign_id);
+      count > 1 ? "differ, and are varied inputs" : "differs, and is a varied input", own ? "one form" : "one campaign",
+      own ? "where" : campaign);
   scheduler_note(driver->scheduler, text);
   return STATUS_OK;
+}
+
+/* Is this the first point of the campaign, or the first with these names, such as of materials, among those varied? */
+static bool is_first_of_names(struct driver *driver, const struct scene *scene) {
+  char text[FIELD_TEXT_SIZE];
+  uint64_t hash = TEXT_HASH_START;
+  for (size_t i = 0; i < driver->campaign->axis_count; i++) {
+    const struct field *row = driver->campaign->axes[i].row;
+    struct field_value value = {0};
+    if (!text_ends_in(row->path, ".name"))
+      continue;
+    field_get(row, scene->inputs, &value);
+    field_show(row, &value, text, sizeof text);
+    hash = text_hash(hash, text, strlen(text) + 1);
+  }
+  return remember(driver, -(int64_t)(hash >> 1) - 1); /* ids of points are positive */
 }
 
 /* Takes the next design point and its stored runs into the window. *more is false when the window is full or the design
@@ -337,7 +355,7 @@ static status expand(struct driver *driver, bool *more, struct error *error) {
   point->id = id;
   driver->summary.points++;
   driver->wanted += point->prefix;
-  if (driver->summary.points == 1)
+  if (is_first_of_names(driver, scene))
     code = tell_hidden_inputs(driver, scene, id, error);
   if (code == STATUS_OK)
     code = resume(driver, point, error);

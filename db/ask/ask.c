@@ -130,17 +130,25 @@ struct answer ask_campaign_documents(struct store *store, struct error *error) {
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error) {
   return answer_to(
       store, error,
-      "WITH other AS (SELECT campaign_id, min(point_id) AS first FROM campaign JOIN campaign_point USING (campaign_id)"
-      " WHERE campaign_id <> %lld GROUP BY campaign_id HAVING name = (SELECT name FROM campaign WHERE campaign_id = "
-      "%lld) OR (SELECT engine || scene_name FROM point WHERE point_id = first) = (SELECT engine || scene_name FROM "
-      "point WHERE "
-      "point_id = %lld))"
-      " SELECT mine.path, theirs.value, (SELECT scene FROM point WHERE point_id = other.first), max(other.campaign_id) "
-      "FROM other JOIN point_input mine ON mine.point_id = %lld"
-      " LEFT JOIN point_input theirs ON theirs.point_id = other.first AND theirs.path = mine.path WHERE theirs.value IS"
-      " NOT mine.value AND mine.path NOT IN (SELECT path FROM axis) AND NOT " FOLLOWS_A_NAME(
-          "mine.path", "mine.point_id", "other.first") " GROUP BY mine.path ORDER BY mine.path",
-      (long long)campaign, (long long)campaign, (long long)point, (long long)point);
+      "WITH this (campaign_id, point_id) AS (VALUES (%lld, %lld)),"
+      " mine AS MATERIALIZED (SELECT path, value FROM point_input JOIN this USING (point_id)),"
+      " keys AS MATERIALIZED (SELECT *, path LIKE '%%.name' AS names FROM mine WHERE path LIKE '%%.name' OR path IN "
+      "(SELECT j.value FROM campaign JOIN this USING (campaign_id), json_each(plan, '$.axes') AS j)),"
+      " its AS (SELECT campaign_id, campaign_id = (SELECT campaign_id FROM this) AS own, min(point_id) AS first FROM "
+      "campaign JOIN campaign_point USING (campaign_id) GROUP BY campaign_id HAVING name = (SELECT name FROM campaign "
+      "JOIN this USING (campaign_id)) OR (SELECT engine || scene_name FROM point WHERE point_id = first) = (SELECT "
+      "engine || scene_name FROM point JOIN this USING (point_id))),"
+      " alike AS (SELECT *, (SELECT point_id FROM campaign_point c WHERE c.campaign_id = its.campaign_id AND NOT (own "
+      "AND point_id IN (SELECT point_id FROM this)) AND NOT EXISTS (SELECT 1 FROM keys JOIN point_input i USING (path) "
+      "WHERE i.point_id = c.point_id AND i.value IS NOT keys.value AND (own OR names)) ORDER BY point_id DESC LIMIT 1) "
+      "AS point_id FROM its),"
+      " other AS (SELECT campaign_id, own, iif(own, point_id, ifnull(point_id, first)) AS first FROM alike)"
+      " SELECT mine.path, theirs.value, (SELECT scene FROM point WHERE point_id = first), own, max(campaign_id + own * "
+      "1e9) FROM other JOIN mine ON first IS NOT NULL LEFT JOIN point_input theirs ON theirs.point_id = first AND "
+      "theirs.path = mine.path WHERE theirs.value IS NOT mine.value AND mine.path NOT IN (SELECT path FROM axis) AND "
+      "NOT " FOLLOWS_A_NAME("mine.path", "(SELECT point_id FROM this)", "first") " GROUP BY mine.path ORDER BY "
+                                                                                 "mine.path",
+      (long long)campaign, (long long)point);
 }
 
 struct answer ask_campaign_different_inputs(struct store *store, struct error *error) {
@@ -337,7 +345,7 @@ status ask_columns_units(struct store *store, struct ask_column **columns, size_
 }
 
 struct answer ask_columns_view(struct store *store, const char *view, struct error *error) {
-  return answer_to(store, error, "SELECT * FROM \"%w\"", view);
+  return answer_to(store, error, "SELECT * FROM \"%w\" ORDER BY 1", view);
 }
 
 /* ---- resolution ---- */

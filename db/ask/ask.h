@@ -77,10 +77,11 @@ struct answer ask_campaign_sessions(struct store *store, struct error *error);
 /* One row per campaign: campaign, name, document. */
 struct answer ask_campaign_documents(struct store *store, struct error *error);
 
-/* Inputs that differ between the point and the first points of other campaigns with the name or the scene of this one,
- * and that no campaign of the store varies, so that tables do not show them. A row per input: path, value of the last
- * such campaign that differs (SI; NULL: the input does not apply there), and the scene of its first point
- * (JSON). */
+/* Inputs that no campaign of the store varies, so that tables do not show them, and that differ between the point and:
+ * a point of the same campaign with the same varied inputs (its scene or a file of its was changed); of each other
+ * campaign with its name or scene, a point with the same names (of materials), else the first one. A row per input:
+ * path, value there (SI; NULL: the input does not apply there; of the same campaign, else of the last), the scene of
+ * its point (JSON), and whether it is the same campaign. */
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error);
 /* The same of all campaigns of one scene, as after a merge. A row per input and first point of a campaign in which it
  * applies: engine, path, scene of the point (JSON). */
@@ -123,8 +124,8 @@ struct ask_doubts_choice {
 status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *results,
                   struct ask_doubts *doubts, struct error *error);
 
-/* How many runs of the store count and are in doubt. */
-status ask_doubts_count(struct store *store, double *runs, struct error *error);
+/* How many runs of the store count and are in doubt, and how many only studies and searches have. */
+status ask_doubts_count(struct store *store, double *doubtful, double *of_studies, struct error *error);
 
 /* Adds `runs` runs of these words, and returns what the words say of the results. */
 enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,

@@ -7,6 +7,7 @@
 
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
+#include "db/store/views.h"
 #include "schemas/text.h"
 
 static const char doing[] = "choosing runs";
@@ -46,17 +47,11 @@ static status choose_campaigns(struct store *store, const char *campaign, struct
                      doing, error);
 }
 
-#define OF_PEOPLE                                                                                                      \
-  "SELECT point_id FROM main.campaign_point JOIN main.campaign USING (campaign_id) WHERE NOT " CAMPAIGN_IS_ROUND
-/* Points with a campaign, but none that a person wrote, leave; and points without a campaign and without runs, which a
- * study that was stopped had planned: these are not told. */
 static status choose_campaigns_alone(struct store *store, struct error *error) {
   TRY(sql_execute(store->db,
-                  "DELETE FROM temp.chosen_point AS p WHERE NOT EXISTS (SELECT 1 FROM main.run r WHERE r.point_id = "
-                  "p.point_id) AND point_id NOT IN (SELECT point_id FROM main.campaign_point) AND EXISTS (" OF_PEOPLE
-                  "); DELETE FROM temp.chosen_point WHERE point_id IN (SELECT point_id FROM main.campaign_point) AND "
-                  "point_id NOT IN (" OF_PEOPLE ") AND EXISTS (" OF_PEOPLE ")",
-                  doing, error));
+                  "DELETE FROM temp.chosen_point AS p WHERE point_id NOT IN (SELECT point_id FROM campaign_point) "
+                  "AND " POINT_IS_OF_STUDY "; DELETE FROM temp.chosen_point AS p WHERE " POINT_IS_OF_STUDY,
+                  doing, error)); /* those that a study had planned and did not begin are not told */
   store->left_out = sqlite3_changes64(store->db);
   return STATUS_OK;
 }
@@ -93,13 +88,16 @@ static status make_views(sqlite3 *db, bool summed, struct error *error) {
 }
 
 /* The inputs that tables show and charts choose from. `choice` has its views already. Derived: a default that follows
- * from what campaigns vary, as it differs within one that does not vary it. */
+ * from what campaigns vary, as it differs within one that does not vary it, and from edited: inputs that nobody varies
+ * and that became axes because a campaign's files were changed. */
 static status choose_axes(sqlite3 *db, const struct ask_choice *choice, struct error *error) {
   return sql_executef(
       db, doing, error,
       "CREATE TEMP TABLE chosen_axis AS WITH"
       " varied AS (SELECT j.value AS path FROM campaign, json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j"
       "   WHERE %d OR NOT %s),"
+      " edited AS (SELECT path FROM main.axis WHERE path NOT IN (SELECT j.value FROM main.campaign, "
+      "   json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j)),"
       " counted AS MATERIALIZED (SELECT point_id FROM point p WHERE EXISTS (SELECT 1 FROM run WHERE run.point_id = "
       "   p.point_id)),"
       " given AS MATERIALIZED (SELECT path, point_id, (SELECT quote(value) FROM main.point_input i WHERE i.point_id ="
@@ -112,9 +110,10 @@ static status choose_axes(sqlite3 *db, const struct ask_choice *choice, struct e
       "   WHERE NOT EXISTS (SELECT 1 FROM given v JOIN given n USING (point_id) WHERE v.path = other.path AND n.path ="
       "   name GROUP BY n.value HAVING count(DISTINCT ifnull(v.value, '')) > 1)),"
       " place AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v) FROM (SELECT path || quote(value) AS v FROM "
-      "   main.point_input i WHERE i.point_id = c.point_id AND path IN (SELECT path FROM varied) ORDER BY path)) AS "
+      "   main.point_input i WHERE i.point_id = c.point_id AND (path IN varied OR path IN edited) ORDER BY path)) AS "
       "   inputs FROM counted c),"
-      " derived AS (SELECT path FROM other WHERE EXISTS (SELECT 1 FROM given JOIN campaign_point USING (point_id) JOIN "
+      " derived AS (SELECT path FROM other WHERE path NOT IN edited AND EXISTS (SELECT 1 FROM given JOIN "
+      "campaign_point USING (point_id) JOIN "
       "   campaign USING (campaign_id) WHERE given.path = other.path AND (%d OR NOT %s) GROUP BY campaign_id HAVING "
       "   count(DISTINCT ifnull(value, '')) > 1) AND NOT EXISTS (SELECT 1 FROM given JOIN place USING (point_id) WHERE "
       "   given.path = other.path GROUP BY inputs HAVING count(DISTINCT ifnull(value, '')) > 1))"

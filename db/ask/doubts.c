@@ -22,8 +22,9 @@ static void add_word(struct ask_doubts *doubts, const char *word, const struct c
   doubts->word[k].runs += runs;
 }
 
-status ask_doubts_count(struct store *store, double *runs, struct error *error) {
-  return answer_number(store, runs, error, "SELECT count(*) FROM runs WHERE counts AND doubtful");
+status ask_doubts_count(struct store *store, double *doubtful, double *of_studies, struct error *error) {
+  TRY(answer_number(store, of_studies, error, "SELECT count(*) FROM runs WHERE study"));
+  return answer_number(store, doubtful, error, "SELECT count(*) FROM runs WHERE counts AND doubtful");
 }
 
 enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,

@@ -218,8 +218,6 @@ struct store_kind { /* fills result_<engine> */
 
 /* SQL: have the points with runs several scenes? Then the scene is an axis, in the column `scene` of the views. */
 #define STORE_HAS_SCENES "(SELECT count(DISTINCT scene_name) FROM point JOIN point_total USING (point_id)) > 1"
-/* SQL: did clast write the document of this campaign, a round of a study or a search (converge, find, fit)? */
-#define CAMPAIGN_IS_ROUND "ifnull(document LIKE '# Written by clast %', 0)"
 
 struct store {
   sqlite3 *db;

@@ -243,7 +243,9 @@ static void write_rows_of(struct view *view, char *sql) {
   sqlite3_free(sql);
 }
 
+/* What all views of points begin with: is the point one of a study, and the varied inputs. */
 static void write_axes(struct view *view) {
+  fputs("  (" POINT_IS_OF_STUDY ") AS study,\n", view->out);
   write_rows(view,
              "SELECT format('  (SELECT value FROM point_input i WHERE i.point_id = p.point_id AND i.path = %Q) AS "
              "\"%w\",' || char(10), path, column_name) FROM axis ORDER BY path");

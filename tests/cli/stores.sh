@@ -53,6 +53,15 @@ for of in estimates scatter spectrum exponents; do
   expect 0 "$clast" $of charged.db
   same "$(head -1 out | tr -s ' ')" "$(head -1 charged-$of | tr -s ' ')" "columns of $of"
 done
+expect 0 "$clast" query charged.db "select count(*) from runs where not study" --csv
+same "$(tail -1 out)" 4 "runs without those of the study"
+expect 0 "$clast" query charged.db "select count(*) from runs" --csv
+says "of this store are at points that only studies and searches have"
+expect 0 "$clast" export charged.db --per run
+same "$(sed 1d out | wc -l)" 4 "rows of runs"
+expect 0 "$clast" export charged.db --per run --studies
+[ "$(sed 1d out | wc -l)" -gt 4 ] || fail "the study's runs are left out"
+expect 64 "$clast" export charged.db whole.db --campaign 1
 expect 0 "$clast" run charged.yaml
 same "$(head -1 out | tr -s ' ')" "$(head -1 charged-estimates | tr -s ' ')" "columns of run"
 for format in csv json; do "$clast" run charged.yaml --quiet --$format | grep -q spacing && fail "the study's input in $format"; done
@@ -166,6 +175,24 @@ same "$(m_of later.db)" "4.0" "a value that is set beside the name"
 expect 0 "$clast" run later.yaml -j 1 --quiet --store command.db --set target.material.weibull.m=5
 same "$(m_of command.db)" "5.0" "a value on the command line"
 
+# So is a change of a file that the campaign names: of its scene, and of one rock among others.
+cat >my.yaml <<'YAML'
+material: mine
+like: granite
+density: 2600 kg/m^3
+YAML
+printf 'name: files\nscene: ./rock.yaml\nvary: {target.material: [basalt, ./my.yaml]}\nseeds: {per_point: 1}\n' >files.yaml
+expect 0 "$clast" run files.yaml -j 1 --quiet
+sed -i 's/2600/2500/' my.yaml
+expect 0 "$clast" run files.yaml -j 1 --quiet
+says "target.material.density (2600 kg/m^3 there, 2500 kg/m^3 here) differs"
+sed -i 's/speed: 1 km/speed: 2 km/' rock.yaml
+expect 0 "$clast" run files.yaml -j 1 --quiet
+says "impact.speed (1000 m/s there, 2000 m/s here) differs"
+says "For one form alone"
+expect 0 "$clast" estimates files.db
+same "$(head -1 out | tr -s ' ' | cut -d " " -f 1-5)" "point material speed density runs" "inputs of changed files"
+
 # A changed `set` in the same store is told; the same campaign with more seeds is not.
 one changed
 expect 0 "$clast" run changed.yaml -j 1 --quiet
@@ -270,4 +297,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 94
+done_after 106
