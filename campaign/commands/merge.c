@@ -51,7 +51,8 @@ static status show_inputs(struct store *store, const char *target, struct error 
     TRY(scheduler_show_input(store, rows[i], error));
   if (count)
     fprintf(stderr,
-            "clast: warning: campaigns of one scene differ in %s: %s of %s from now on (--by). `clast stats %s "
+            "clast: warning: campaigns of one scene, or forms of one campaign, differ in %s: %s of %s from now on "
+            "(--by). `clast stats %s "
             "--campaign NAME` takes one campaign alone\n",
             names, count == 1 ? "it is a varied input" : "they are varied inputs", target, target);
   return STATUS_OK;

@@ -133,7 +133,8 @@ struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, 
       "WITH this (campaign_id, point_id) AS (VALUES (%lld, %lld)),"
       " mine AS MATERIALIZED (SELECT path, value FROM point_input JOIN this USING (point_id)),"
       " keys AS MATERIALIZED (SELECT *, path LIKE '%%.name' AS names FROM mine WHERE path LIKE '%%.name' OR path IN "
-      "(SELECT j.value FROM campaign JOIN this USING (campaign_id), json_each(plan, '$.axes') AS j)),"
+      "(SELECT j.value FROM campaign JOIN this USING (campaign_id), json_each(iif(json_valid(plan), plan, '{}'), "
+      "'$.axes') AS j)),"
       " its AS (SELECT campaign_id, campaign_id = (SELECT campaign_id FROM this) AS own, min(point_id) AS first FROM "
       "campaign JOIN campaign_point USING (campaign_id) GROUP BY campaign_id HAVING name = (SELECT name FROM campaign "
       "JOIN this USING (campaign_id)) OR (SELECT engine || scene_name FROM point WHERE point_id = first) = (SELECT "
@@ -154,13 +155,22 @@ struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, 
 struct answer ask_campaign_different_inputs(struct store *store, struct error *error) {
   return answer_to(
       store, error,
-      "WITH known AS (SELECT DISTINCT first, engine, scene_name, scene FROM (SELECT min(point_id) AS first "
-      "FROM campaign_point GROUP BY campaign_id) JOIN point ON point_id = first), different AS (SELECT "
-      "engine, scene_name, path FROM known JOIN point_input ON point_id = first WHERE path NOT IN (SELECT "
-      "path FROM axis) GROUP BY engine, scene_name, path HAVING count(DISTINCT value) > 1) SELECT engine, "
-      "path, scene FROM different JOIN known USING (engine, scene_name) WHERE EXISTS (SELECT 1 FROM "
-      "point_input AS its WHERE point_id = first AND its.path = different.path) ORDER BY engine, path, "
-      "first");
+      "WITH varied AS MATERIALIZED (SELECT campaign_id, j.value AS path FROM campaign, json_each(iif(json_valid(plan), "
+      "plan, '{}'), '$.axes') AS j),"
+      " place AS (SELECT campaign_id, point_id, (SELECT group_concat(v) FROM (SELECT path || quote(value) AS v FROM "
+      "varied v JOIN point_input i USING (path) WHERE v.campaign_id = c.campaign_id AND i.point_id = c.point_id ORDER "
+      "BY "
+      "path)) AS inputs FROM campaign_point c),"
+      " alike AS (SELECT format('%%d %%s', campaign_id, inputs) AS one, min(point_id) AS least, max(point_id) AS most "
+      "FROM place GROUP BY 1 HAVING count(*) > 1),"
+      " known AS (SELECT DISTINCT one, point_id, engine, scene_name, scene FROM point JOIN (SELECT NULL AS one, "
+      "min(point_id) AS point_id FROM campaign_point GROUP BY campaign_id UNION ALL SELECT one, least FROM alike UNION "
+      "ALL SELECT one, most FROM alike) USING (point_id)),"
+      " different AS (SELECT one, engine, scene_name, path FROM known JOIN point_input USING (point_id) WHERE path NOT "
+      "IN (SELECT path FROM axis) GROUP BY one, engine, scene_name, path HAVING count(DISTINCT value) > 1)"
+      " SELECT engine, path, scene FROM different JOIN known USING (engine, scene_name) WHERE known.one IS "
+      "different.one AND EXISTS (SELECT 1 FROM point_input AS its WHERE its.point_id = known.point_id AND its.path = "
+      "different.path) ORDER BY engine, path, point_id");
 }
 
 /* The runs of each campaign with their class: safe (usable, no warnings), warned (usable, with warnings), refused

@@ -186,6 +186,13 @@ expect 0 "$clast" run files.yaml -j 1 --quiet
 sed -i 's/2600/2500/' my.yaml
 expect 0 "$clast" run files.yaml -j 1 --quiet
 says "target.material.density (2600 kg/m^3 there, 2500 kg/m^3 here) differs"
+sed -i 's/2500/2400/' my.yaml
+expect 0 "$clast" run files.yaml -j 1 --quiet --store other.db
+sed -i 's/2400/2300/' my.yaml
+expect 0 "$clast" run files.yaml -j 1 --quiet --store another.db
+expect 0 "$clast" merge both.db other.db another.db
+says "differ in target.material.density: it is a varied input"
+sed -i 's/2300/2500/' my.yaml
 sed -i 's/speed: 1 km/speed: 2 km/' rock.yaml
 expect 0 "$clast" run files.yaml -j 1 --quiet
 says "impact.speed (1000 m/s there, 2000 m/s here) differs"
@@ -297,4 +304,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 106
+done_after 109
