@@ -45,9 +45,10 @@ struct campaign {
   char quantity[FIELD_TEXT_SIZE]; /* the main quantity: shown while running; selects the runs of keep `extremes` */
   char store[FIELD_TEXT_SIZE];    /* path, relative to the current folder */
   int64_t first_seed;
-  bool independent;  /* seeds derive from point and replicate instead of first_seed + r */
-  int64_t per_point; /* replicates of every point; 0 when `until` decides */
-  int64_t maximum;   /* most replicates of a point when `until` decides */
+  bool independent;       /* seeds derive from point and replicate instead of first_seed + r */
+  bool independent_given; /* the document says so, or that they do not */
+  int64_t per_point;      /* replicates of every point; 0 when `until` decides */
+  int64_t maximum;        /* most replicates of a point when `until` decides */
   char until_quantity[FIELD_TEXT_SIZE];
   double until_half_width; /* half width of the mean's confidence interval, in the quantity's SI unit */
   bool until_of_value;     /* until_half_width is a share of the mean: given in per cent */

@@ -34,7 +34,8 @@ static const struct field rows[] = {
         .doc =
             "Seed of replicate 0; replicate r of every point has first + r, so that points share their random bodies."),
     ROW("seeds.independent", independent, FIELD_BOOLEAN, NULL, .maximum = 1,
-        .doc = "Every point gets seeds of its own, derived from its inputs and the replicate."),
+        .doc = "Every point gets seeds of its own, derived from its inputs and the replicate. `clast find` gives them, "
+               "whatever stands here, and `clast fit` unless `false` is written."),
     COUNT("seeds.per_point", per_point, 20, 1, 0x1p40, .doc = "Replicates (seeds) of every point."),
     COUNT("seeds.max", maximum, 200, 2, 0x1p40, .doc = "Most replicates of a point when `until` decides."),
     TEXT("seeds.until.quantity", until_quantity, .text = "",

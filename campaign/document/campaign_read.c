@@ -175,6 +175,7 @@ static bool is_of_value(document_node *mapping, const char *key) {
 static void check_seeds(document_node *root, bool stored, struct campaign *campaign) {
   document_node *seeds = key_of(root, "seeds");
   document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
+  campaign->independent_given = key_of(seeds, "independent");
   if (until && per_point)
     document_report(per_point, "seeds.per_point",
                     "a fixed number and `until` exclude each other; leave one of them out");

@@ -1,6 +1,8 @@
 /* A fit finds the inputs of a campaign that reproduce the measurements. The campaign's laws are the priors, and its
- * sampled points are the first ensemble. Rounds of runs move the ensemble towards the data (analysis/inference).
- * Surfaces are fitted to the means of all runs and give the posterior.
+ * sampled points are the first ensemble. Each point has seeds of its own, unless the campaign says that they are not
+ * independent: what a seed does at all points alike would else be the scatter of a few specimens. Rounds of runs move
+ * the ensemble towards the data (analysis/inference). Surfaces are fitted to the means of all runs and give the
+ * posterior.
  *
  *     fit_rounds_launch(line, &options, &error);   // documents, farm, rounds, report
  *

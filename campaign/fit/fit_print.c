@@ -450,13 +450,12 @@ static void tell_shared_seeds(const struct fit *fit, FILE *out) {
     return;
   char label[LABEL];
   observed_label(fit->observed, datum, label, sizeof label);
-  words_print(
-      out, "",
-      "SEEDS: all points share %zu seeds, which move %s alike (correlation %.2g). So its scatter over seeds is "
-      "known from about %.2g specimens, and may be %.2g times as large as sd_seeds; the intervals do not hold "
-      "that. Give each point seeds of its own: `seeds: {per_point: %zu, independent: true}`, and another store.",
-      fit->replicates, label, fit->surfaces.scatter[datum].shared, 1 + least, sample_deviation_factor(least),
-      fit->replicates);
+  words_print(out, "",
+              "SEEDS: all points share %zu seeds, which move %s alike (correlation %.2g). So its scatter over seeds is "
+              "known from about %.2g specimens, and may be %.2g times as large as sd_seeds; the intervals do not hold "
+              "that. Leave `independent: false` out of the campaign: each point then has seeds of its own, and all "
+              "runs are new.",
+              fit->replicates, label, fit->surfaces.scatter[datum].shared, 1 + least, sample_deviation_factor(least));
 }
 
 /* Names the assumptions of the algebra that do not hold. */

@@ -98,6 +98,7 @@ for fit in 'ridge 1 %, 20 %' 'both 1 %, 9 %' 'wide 2 %, 3 %'; do
     'design: {kind: latin_hypercube, points: 10}' 'seeds: {per_point: 4}' "store: $name.db" >"$name.yaml"
 done
 sed -i 's/20 kg/200 kg/' ridge.yaml
+sed -i 's/per_point: 4/per_point: 4, independent: false/' both.yaml # seeds that all points share
 sed 's/^name: .*/name: alone/; s/coarse: .*/angle: {uniform: [2 deg, 6 deg]}/; s/^store: .*/store: alone.db/' ridge.yaml >alone.yaml
 printf 'name: %s\nsource: made up\nshots: [{specimens: %s, measured: [{quantity: largest_fraction, value: 0.85, error: %s, resolution: 0}%s]}]\n' \
   one 1 0.01 '' >one_shot.yaml

@@ -23,6 +23,7 @@ typedef double (*case_model)(const double *u, size_t k, uint64_t seed);
 
 struct case_fit {
   size_t inputs, outputs, points;
+  bool own_seeds; /* each point has seeds of its own; else all points share theirs */
   double z[CASE_POINTS * INFERENCE_INPUTS];
   double values[INFERENCE_OUTPUTS * CASE_POINTS * CASE_REPLICATES]; /* packed: outputs x points x replicates */
   struct surfaces surfaces;
@@ -46,18 +47,20 @@ static inline struct surfaces_runs case_runs(const struct case_fit *fit, double 
                                 .replicates = CASE_REPLICATES,
                                 .z = fit->z,
                                 .values = packed,
-                                .shared_seeds = true};
+                                .shared_seeds = !fit->own_seeds};
 }
 
-/* A round of the ensemble: runs of its members with seeds first_seed + r. */
+/* A round of the ensemble: runs of its members with seeds first_seed + r, or such seeds of their own. first_seed: less
+ * than a million. */
 static inline void case_run(struct case_fit *fit, case_model model, const double *members, uint64_t first_seed) {
   double u[INFERENCE_INPUTS];
   for (size_t j = 0; j < CASE_MEMBERS; j++, fit->points++) {
     memcpy(fit->z + fit->points * fit->inputs, members + j * fit->inputs, fit->inputs * sizeof(double));
+    const uint64_t seed = first_seed + (fit->own_seeds ? UINT64_C(1000000) * (fit->points + 1) : 0);
     case_quantiles(fit->inputs, members + j * fit->inputs, u);
     for (size_t k = 0; k < fit->outputs; k++)
       for (size_t r = 0; r < CASE_REPLICATES; r++)
-        fit->values[(k * CASE_POINTS + fit->points) * CASE_REPLICATES + r] = model(u, k, first_seed + r);
+        fit->values[(k * CASE_POINTS + fit->points) * CASE_REPLICATES + r] = model(u, k, seed + r);
   }
 }
 

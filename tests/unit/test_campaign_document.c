@@ -195,6 +195,7 @@ static void independent_seeds_follow_the_point(void **state) {
   assert_true(campaign_seed(campaign, a, 0) != campaign_seed(campaign, a, 1));
   assert_true(campaign_seed(campaign, a, 3) == campaign_seed(campaign, a, 3));
   assert_true(campaign_seed(campaign, a, 0) >> 63 == 0);
+  assert_true(campaign->independent_given);
   scene_free(a), scene_free(b);
   campaign_free(campaign);
 }
