@@ -6,9 +6,10 @@
 static status list_knobs(const struct study_request *request, const struct command_line *line, struct error *error) {
   SCENE scene = NULL;
   CAMPAIGN campaign = NULL;
-  struct error ignored;
-  if (line->count && campaign_load(line->arguments[0], &campaign, &ignored))
-    TRY(option_load_scene(line->arguments[0], &request->set, &scene, error));
+  const char *path = line->count ? line->arguments[0] : NULL;
+  if (path)
+    TRY(study_is_campaign(path) ? campaign_load(path, &campaign, error)
+                                : option_load_scene(path, &request->set, &scene, error));
   const struct scene *of = campaign ? campaign->scene : scene;
   return study_print_knobs(of ? of->kind : NULL, line->format, error);
 }

@@ -199,8 +199,9 @@ static status add_option(struct finding *finding, const struct convergence_row *
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
   option->share = finding->row && field_is_share(finding->row);
-  option->mean = option->own ? finding->own_mean : row->mean;
-  option->n = option->own ? finding->own_n : row->n;
+  const bool own = option->own && finding->own_n > 0; /* else as of other levels without runs */
+  option->mean = own ? finding->own_mean : row->mean;
+  option->n = own ? finding->own_n : row->n;
   option->most = most_of(option->share, option->mean);
   option->within = finding->campaign->accuracy_within * (finding->campaign->accuracy_of_value ? fabs(option->mean) : 1);
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
@@ -572,6 +573,20 @@ static const struct accuracy_option *finest_open(const struct accuracy *accuracy
   return finest;
 }
 
+/* Appends the words of a command without the --set of the input that `remedy` (PATH=VALUE) sets anew. */
+static void append_without(const char *words, const char *remedy, char *text, size_t size) {
+  static const char set[] = " --set ";
+  const size_t path = strcspn(remedy, "=") + 1;
+  for (const char *at = words; *at;) {
+    const char *word = at + strlen(set), *next = strstr(at + 1, set);
+    const bool is_set = strncmp(at, set, strlen(set)) == 0, quoted = is_set && *word == '\'';
+    if (is_set && strncmp(word + quoted, remedy, path) == 0)
+      at = word + quoted + strcspn(word + quoted, quoted ? "'" : " ") + quoted;
+    text_append(text, size, "%.*s", (int)(next ? next - at : (ptrdiff_t)strlen(at)), at);
+    at = next ? next : "";
+  }
+}
+
 /* The command that studies the knob at a level, one on either side, and the scene's own, whose error is wanted. Levels
  * that would be marked are studied with another input of a shorter step. */
 static void append_study(const struct accuracy *accuracy, const struct campaign *campaign, const struct knob *knob,
@@ -594,7 +609,9 @@ static void append_study(const struct accuracy *accuracy, const struct campaign 
                 "are in doubt (clast explain %s) and do not count",
                 remedy, mark->word);
   }
-  text_append(next, size, ": `clast converge %s%s --knob %s=", accuracy->path, set, knob->name);
+  text_append(next, size, ": `clast converge ");
+  append_without(accuracy->path, mark ? remedy : "", next, size);
+  text_append(next, size, "%s --knob %s=", set, knob->name);
   for (size_t i = 0; i < 4; i++)
     if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
       text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit_of(campaign, knob));

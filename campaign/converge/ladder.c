@@ -184,6 +184,9 @@ static status add_all_named(struct making *making, const char *settings, struct 
           (ladder->count - 1 - reference) * sizeof *ladder->level);
   ladder->level[ladder->count - 1] = last;
   ladder->level[ladder->count - 1].reference = true;
+  if (strcmp(last.setting, "reference") != 0 && strcmp(last.setting, SCENE_SETTINGS_STANDARD) != 0)
+    fprintf(making->notes, "settings %s take the most work here: the others are compared with them (ref)\n",
+            last.setting);
   return STATUS_OK;
 }
 

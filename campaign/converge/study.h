@@ -107,6 +107,8 @@ struct study_request;
  * found and draws the pictures. STATUS_OK also when the budget is spent; STATUS_STOPPED after a signal: the same
  * command continues the study. */
 status study_launch(const struct study_request *request, const struct command_line *line, struct error *error);
+/* Only a campaign's document has the key `scene`. A name without a file is a built-in scene. */
+bool study_is_campaign(const char *path);
 
 /* ---- study_print.c ---- */
 

@@ -74,8 +74,7 @@ static status load_scene(struct study_subject *subject, const char *reference, c
   return add_scene(subject, set, scene, error);
 }
 
-/* Only a campaign's document has the key `scene`. A name without a file is a built-in scene. */
-static bool is_campaign(const char *path) { /* whoever opens it next notes it as an input */
+bool study_is_campaign(const char *path) { /* whoever opens it next notes it as an input */
   bool found = false;
   char line[4096];
   struct stat file; /* a device may never end, and a pipe can be read once */
@@ -90,7 +89,7 @@ static bool is_campaign(const char *path) { /* whoever opens it next notes it as
 
 static status load(struct study_subject *subject, const char *path, const struct option_list *set,
                    struct error *error) {
-  TRY(is_campaign(path) ? load_campaign(subject, path, set, error) : load_scene(subject, path, set, error));
+  TRY(study_is_campaign(path) ? load_campaign(subject, path, set, error) : load_scene(subject, path, set, error));
   struct campaign *limits = &subject->study.limits;
   /* The study borrows these from the campaign, so they must not be freed twice. */
   subject->study.varied = limits->axes;

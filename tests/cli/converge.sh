@@ -472,6 +472,8 @@ expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,2mm --seeds 3 -
 expect 65 "$clast" plan coarse.yaml
 says "Levels whose runs are in doubt do not count: grains = 0.002 m (3 of 3 runs of the study: step"
 says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob grains=0.004m,0.002m,0.001m,0.01069m\`"
+expect 65 "$clast" plan coarse.yaml --set 'fidelity.time_step=1 us'
+says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob" # one --set of an input
 sed 's/within: 0.01/within: 0.9/' coarse.yaml >wide.yaml
 expect 0 "$clast" plan wide.yaml --no-trial
 prints "Left out, as their runs are in doubt (!) where the scene's own are not: grains = 0.002 m (3 of 3"
@@ -559,6 +561,9 @@ expect 64 "$clast" converge disc-explosion --within wide
 expect 64 "$clast" converge disc-explosion -Q largest_fraction,broken --within 0.1
 expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
+printf 'name: bad\nscene: disc-explosion\nvary: {grains: [1]}\n' >bad.yaml
+expect 65 "$clast" converge bad.yaml --list
+says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 141
+done_after 143

@@ -204,6 +204,11 @@ static void named_settings_are_levels(void **state) {
   char spacing[64];
   ladder_setting(knob_of("dem", "grains"), ladder.level[3].scene, spacing, sizeof spacing);
   assert_string_equal(spacing, "0.008");
+  assert_string_equal(notes, "");
+  ladder_clear(&ladder);
+  free(notes);
+  assert_int_equal(ladder_make(knob, scene, "finest,standard", &ladder, &notes, &error), STATUS_OK);
+  assert_string_equal(notes, "settings finest take the most work here: the others are compared with them (ref)\n");
   ladder_clear(&ladder);
   free(notes);
   assert_int_equal(ladder_make(knob, scene, "draft,standard", &ladder, &notes, &error), STATUS_OK);
