@@ -5,7 +5,7 @@ import {inputsOf} from './spectrum.js';
 import * as questions from './questions.js';
 import {state} from './state.js';
 import {ask, has} from './stores.js';
-import {label, marked, number, operandOf, withError, withInterval} from './words.js';
+import {label, marked, number, onlyOf, operandOf, withError, withInterval} from './words.js';
 
 const SHOWN = 500;
 
@@ -30,6 +30,7 @@ export function showCompare() {
   const rows = cells(first, state.quantity).map((cell) => [cell, ...others.map((_, i) => partner(cell, i))]).filter((row) => row.slice(1).some(Boolean));
   const inputs = (row) => [...new Set(row.map((cell, i) => (cell ? inputsOf(state.stores[i], cell) : '')))].filter(Boolean).join('; ') || 'the only point';
   const shown = (cell) => (cell ? `${marked(withInterval(cell), cell.doubt, cell.n)}, n=${cell.n ?? 0}` : '-');
+  const {campaign, ...rest} = first.facts, chosen = {facts: first.name === first.facts.file ? first.facts : rest}; // STORE:CAMPAIGN names its own
   const both = (a, b) => (a.doubt || b?.doubt ? {withheld: 0} : null);
   const less = (a, b, i) => marked(plainly(a, b, i), both(a, b));
   const plainly = (a, b, i) => differences[i].get(`${a.point_id} ${b?.point_id}`) ?? (b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
@@ -41,10 +42,10 @@ export function showCompare() {
   fill(body('compare'),
     ...apart.filter(Boolean).map((text) => element('p', {}, text)),
     rows.length ? table(`${title} of ${rows.every((row) => inputs(row) === inputs([row[0]])) ? 'the points with the same varied inputs' : 'two points'}; ± is the 95 % interval over seeds`,
-      ['inputs', first.name, ...others.flatMap((other) => [other.name, 'difference'])],
+      ['inputs', first.name, ...others.flatMap((other) => [other.name, `${other.name} minus ${first.name}`])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputs([cell, ...rest]), shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, `These stores have no point in common.${none.join('')}`),
     ...[...new Set(state.stores.map((one, i) => doubtSentence(one, rows.map((row) => row[i]).filter(Boolean))))].map((text) => element('p', {}, text)),
     rows.length ? element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:') : null,
-    ...(state.quantity === 'beta' ? [] : others.filter((other) => !other.facts.no_pair).map((other) => element('p', {}, command(`clast compare ${operandOf(first)} ${operandOf(other)} --quantity ${state.quantity}`)))));
+    ...(state.quantity === 'beta' ? [] : others.filter((other) => !other.facts.no_pair).map((other) => element('p', {}, command(`clast compare ${operandOf(first)} ${operandOf(other)}${onlyOf(chosen)} --quantity ${state.quantity}`)))));
 }

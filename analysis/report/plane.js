@@ -7,7 +7,7 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, exponents, has, newest} from './stores.js';
-import {inUnit, label, marked, number, plural, rangeOf, shell, fileOf, withInterval} from './words.js';
+import {inUnit, label, marked, number, onlyOf, plural, rangeOf, fileOf, withInterval} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 const MOST_LINES = 8; // of `clast plot`
@@ -265,9 +265,9 @@ function takeKeys(figure, rows) {
 function commandOf(at) {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
   const from = fileOf(store());
-  if (!state.x) return `clast stats ${from} --quantity ${quantity}${store().points.length === 1 ? ` --point ${store().points[0].point_id}` : ''}`;
+  if (!state.x) return `clast stats ${from} --quantity ${quantity}${store().points.length === 1 ? ` --point ${store().points[0].point_id}` : ''}${onlyOf(store())}`;
   const sql = Object.entries(at).map(([column, value]) => `${column} IS ${typeof value === 'string' ? `'${value.replace(/'/g, "''")}'` : value}`).join(' AND ');
-  const {points} = store(), where = points.length === 1 ? ` --point ${points[0].point_id}` : sql && ` --where ${shell(sql)}`;
+  const {points} = store(), where = points.length === 1 ? ` --point ${points[0].point_id}${onlyOf(store())}` : onlyOf(store(), sql);
   const has = (column) => (row) => row[column] !== NONE, is = (column) => (row) => typeof row[column] === 'number';
   if (state.y && plane.shown.filter(is(state.x)).some(is(state.y))) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -Q ${quantity}${where}`;
   const lines = new Set(plane.shown.filter(has(state.x)).map((row) => row[state.y]));
@@ -275,7 +275,7 @@ function commandOf(at) {
   return quantity === 'beta' ? `clast estimates ${from}${where}` : `clast stats ${from} --by ${state.x}${state.y ? `,${state.y}` : ''} -Q ${quantity}${where}`;
 }
 
-const WHAT_ERRORS = '±, which the table of points has too, is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
+const WHAT_ERRORS = '± in the table of points is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
 function resolutionSentence(rows) {
   const studied = rows.filter((row) => row.resolution !== null), weak = rows.some((row) => row.weak) ? ' ~: weak, too few runs for the interval.' : '';
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;

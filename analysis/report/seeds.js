@@ -33,7 +33,7 @@ function histogram({name, values}, step) {
   return Array.from({length: high - low + 3}, (_, i) => low - 1 + i).map((bin) => ({name, low: bin * step, high: (bin + 1) * step, runs: counts.get(bin) ?? 0}));
 }
 
-const commandOf = (from, quantity, points) => `clast scatter ${fileOf(from)}${whereOf(points)} --quantity ${quantity}`;
+const commandOf = (from, quantity, points) => `clast scatter ${fileOf(from)}${whereOf(from, points)} --quantity ${quantity}`;
 
 export async function showSeeds() {
   const figure = document.querySelector('#seeds figure'), below = body('seeds'), quantity = state.quantity, from = store();

@@ -6,7 +6,7 @@ import {chosenPoints, state, store} from './state.js';
 import {cells, doubtSentence} from './plane.js';
 import {pool} from './statistics.js';
 import {ask, exponents, has} from './stores.js';
-import {inUnit, marked, number, plural, fileOf, unitOf, withError} from './words.js';
+import {inUnit, marked, number, onlyOf, plural, fileOf, unitOf, withError} from './words.js';
 
 export const inputsOf = (from, point) => from.axes.filter((axis) => point[axis.column_name] !== null).map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
@@ -75,14 +75,14 @@ function marksOf(curve) {
 }
 
 // Options that choose these points on a command line.
-export function whereOf(points) {
-  if (points.length === 1) return ` --point ${points[0]}`;
-  return points.length === store().points.length ? '' : ` --where "point_id in (${points.join(', ')})"`;
+export function whereOf(from, points) {
+  if (points.length === 1) return ` --point ${points[0]}${onlyOf(from)}`;
+  return onlyOf(from, points.length === store().points.length ? '' : `point_id in (${points.join(', ')})`);
 }
 
 function commandOf(drawn) {
   const of = drawn.filter((curve) => curve.from === drawn[0].from).flatMap((curve) => curve.points).map((point) => point.point_id);
-  return `clast spectrum ${fileOf(drawn[0].from)}${whereOf(of)}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
+  return `clast spectrum ${fileOf(drawn[0].from)}${whereOf(drawn[0].from, of)}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
 }
 
 export async function showSpectrum() {

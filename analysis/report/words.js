@@ -104,6 +104,11 @@ const shellFile = (text) => shell(text.startsWith('-') ? `./${text}` : text);
 // The file of a store for other commands than `clast report` and `clast compare`, which also take STORE:POINT.
 export const fileOf = (store) => shellFile(store.facts.file ?? store.name);
 export const operandOf = (store) => shellFile(store.name);
+// Options of other commands that choose the runs of the page and, of these, those that meet a condition.
+export function onlyOf({facts}, condition) {
+  const where = [facts.where, condition].filter(Boolean), all = where.length > 1 ? where.map((one) => `(${one})`).join(' AND ') : where[0];
+  return `${facts.campaign ? ` --campaign ${shell(facts.campaign)}` : ''}${facts.studies ? ' --studies' : ''}${all ? ` --where ${shell(all)}` : ''}`;
+}
 
 // A text that a spreadsheet would run as a formula gets an apostrophe, as in the tables of clast.
 export function csv(columns, rows) {

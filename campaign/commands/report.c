@@ -28,6 +28,7 @@ struct report_choice {
 
 struct making {
   const struct report_choice *choice;
+  const struct ask_choice *runs; /* of this store */
   struct store *store;
   struct ask_page *page;
   size_t tried, picture_bytes, left_out, not_drawn; /* of pictures */
@@ -51,7 +52,10 @@ static status add_facts(struct making *making, const char *name, const char *pat
                             {"default_quantity", quantity},
                             {"pictures_by", OUTCOME_DEFAULT},
                             {"refresh", refresh},
-                            {"chosen", ask_chosen(making->store)}};
+                            {"chosen", ask_chosen(making->store)},
+                            {"campaign", making->runs->campaign},
+                            {"where", making->runs->where},
+                            {"studies", making->runs->campaigns_alone ? NULL : "1"}};
   for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
     TRY(ask_page_fact(making->page, facts[i][0], facts[i][1], error));
   return STATUS_OK;
@@ -162,7 +166,7 @@ static status add_store(const struct report_choice *choice, const char *name, st
   TRY(ask_run_excluded_count(store, &excluded, error));
   uncertainty_excluded(excluded, name);
   uncertainty_left_out(ask_choice_left_out(store));
-  struct making making = {.choice = choice, .store = store};
+  struct making making = {.choice = choice, .runs = &runs, .store = store};
   status code = ask_page_make(store, &making.page, error);
   if (code == STATUS_OK)
     code = fill_page(&making, name, path, data, error);
@@ -196,11 +200,16 @@ static bool is_running(const struct report_choice *choice) {
   return running;
 }
 
-/* demo.html in the current folder for the store folder/demo.db. */
-static void name_page(const char *store, char *name, size_t size) {
+/* demo.html in the current folder for the store folder/demo.db, demo-1.html for folder/demo.db:1. */
+static void name_page(const char *operand, char *name, size_t size) {
+  char store[LIMITS_PATH];
+  ask_choose_operand(operand, store, sizeof store, &(struct ask_choice){0});
   const char *slash = strrchr(store, '/'), *base = slash ? slash + 1 : store;
-  const char *dot = strrchr(base, '.');
-  snprintf(name, size, "%.*s.html", (int)(dot && dot > base ? (size_t)(dot - base) : strlen(base)), base);
+  const char *dot = strrchr(base, '.'), *part = operand + strnlen(store, strlen(operand));
+  snprintf(name, size, "%.*s%s%s.html", (int)(dot && dot > base ? (size_t)(dot - base) : strlen(base)), base,
+           *part ? "-" : "", *part ? part + 1 : "");
+  for (char *at = name; (at = strchr(at, '/'));)
+    *at = '-'; /* in the name of a campaign */
 }
 
 /* Makes the page again and again while a campaign writes one of the stores, and once more at its end. */

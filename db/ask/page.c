@@ -147,8 +147,8 @@ struct column {
   char name[NAME];
   bool main; /* of the view points */
   struct sample_range range;
-  bool number, varies; /* has a value; has two values */
-  double first;
+  bool number; /* has a value */
+  double least, most;
   struct sample_moments moments; /* of the current point */
   double *values;                /* of the current point; owned */
   size_t values_count, values_room;
@@ -164,6 +164,10 @@ struct reading {
   int64_t point_id, results_version; /* the current ones */
   size_t runs;                       /* of the current point that count */
 };
+
+static bool varies(const struct column *column) {
+  return column->most > column->least;
+}
 
 static bool is_main(const char *name) {
   const char *names[VIEWS_STATISTICS_MAIN];
@@ -225,10 +229,9 @@ static status end_point(struct reading *reading, bool newest, struct error *erro
 }
 
 static status add_value(struct column *column, double value, struct error *error) {
-  if (!column->number)
-    column->first = value;
+  column->least = column->number ? fmin(column->least, value) : value;
+  column->most = column->number ? fmax(column->most, value) : value;
   column->number = true;
-  column->varies = column->varies || value != column->first;
   sample_add(&column->moments, value);
   if (column->values_count == JUDGED_RUNS)
     return STATUS_OK;
@@ -272,21 +275,17 @@ static status read_results(struct reading *reading, struct store *store, struct 
   return end_point(reading, true, error);
 }
 
-/* The numbers of particles or grains of the points, for the head of the page. */
+/* The numbers of particles or grains of the runs, for the head of the page. */
 static status tell_elements(struct reading *reading, struct error *error) {
-  static const char *const names[] = {"particles", "grains"};
-  char text[128] = "", least[32], most[32];
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-    ANSWER numbers = answer_to(&reading->page->store, error,
-                               "SELECT min(mean), max(mean) FROM means WHERE quantity = %Q", names[i]);
-    if (answer_next(&numbers) && answer_real(&numbers, 0) > 0) {
-      snprintf(least, sizeof least, "%.0f", answer_real(&numbers, 0));
-      snprintf(most, sizeof most, "%.0f", answer_real(&numbers, 1));
-      const bool equal = strcmp(least, most) == 0; /* means over seeds, which are no whole numbers */
-      text_append(text, sizeof text, "%s%s%s%s %s", *text ? ", " : "", least, equal ? "" : " to ", equal ? "" : most,
-                  names[i]);
-    }
-    TRY(answer_end(&numbers));
+  char text[128] = "";
+  for (size_t i = 0; i < reading->count; i++) {
+    const struct column *column = &reading->column[i];
+    if (!(column->most > 0) || (strcmp(column->name, "particles") != 0 && strcmp(column->name, "grains") != 0))
+      continue;
+    text_append(text, sizeof text, "%s%.0f", *text ? ", " : "", column->least);
+    if (varies(column))
+      text_append(text, sizeof text, " to %.0f", column->most);
+    text_append(text, sizeof text, " %s", column->name);
   }
   return ask_page_fact(reading->page, "elements", text, error);
 }
@@ -302,12 +301,12 @@ static status thin_means(struct reading *reading, struct error *error) {
   TRY(tell_elements(reading, error));
   int64_t rows = 0, points = 0;
   for (size_t i = 0; i < reading->count; i++)
-    if (reading->column[i].number && !reading->column[i].varies && !spectrum_needs(reading->column[i].name))
+    if (reading->column[i].number && !varies(&reading->column[i]) && !spectrum_needs(reading->column[i].name))
       TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
   TRY(sql_integer(db, "SELECT count(*) FROM means", 0, &rows, error));
   TRY(sql_integer(db, "SELECT count(DISTINCT point_id) FROM means", 0, &points, error));
   for (size_t i = reading->count; rows > MEANS && i-- > 0;) {
-    if (reading->column[i].main || !reading->column[i].varies || spectrum_needs(reading->column[i].name))
+    if (reading->column[i].main || !varies(&reading->column[i]) || spectrum_needs(reading->column[i].name))
       continue;
     TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
     rows -= points;
@@ -341,7 +340,7 @@ static void write_results(const struct reading *reading, double runs, sqlite3_st
   for (int main = 1; main >= 0; main--)
     for (size_t i = 0; i < reading->count; i++) {
       const struct column *column = &reading->column[i];
-      if (column->main != main || (!main && !column->varies))
+      if (column->main != main || (!main && !varies(column)))
         continue;
       if (!main && room == 0) {
         ++*left_out;

@@ -306,7 +306,7 @@ def marks(browser):
     why = " !: in doubt, 6 of 12 runs. step: fidelity.time_step over the longest stable step is above 0.25: energy may drift; give a"
     caption = text(browser, "#plane-chart figcaption")
     assert why in caption and "that was studied at 1 point: >= 0.042." in caption, caption
-    assert re.search(r", [0-9]+ grains, 3 seeds a point", text(browser, "#made")), text(browser, "#made")
+    assert re.search(r", ([0-9]+) to ([0-9]+) grains, 3 seeds a point", text(browser, "#made")), text(browser, "#made")
     assert why.replace("6 of 12", "3 of 6") in text(browser, "#seeds figcaption"), text(browser, "#seeds figcaption")
     assert why.replace("6 of 12", "3 of 6") in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
     table = "[...document.querySelectorAll('%s tbody tr')].map((r) => [...r.cells].map((c) => c.textContent.trim()))"
@@ -404,7 +404,7 @@ def side_by_side(browser):
     assert abs(float(re.match(r"[0-9.]+", cell).group()) - mean) < 0.1 * mean, (cell, mean)
     browser.size(390, 900)
     browser.until("document.querySelector('#compare .scroll').scrollWidth <= document.querySelector('#compare .scroll').clientWidth")
-    assert browser.js("document.querySelector('#compare td:last-child').dataset.heading") == "difference"
+    assert browser.js("document.querySelector('#compare td:last-child').dataset.heading") == "other.db minus small.db"
     browser.size(1280, 900)
     browser.open("pair.html")
     wait_shown(browser, 1)
@@ -413,6 +413,12 @@ def side_by_side(browser):
     assert browser.js("document.querySelectorAll('#points tbody tr').length") == 1
     commands = browser.js("[...document.querySelectorAll('figure code, #compare code')].map((c) => c.textContent)")
     assert len(commands) == 4 and "clast compare small.db:1 small.db:4 --quantity largest_fraction" in commands, commands
+    for command in commands:
+        subprocess.run([clast, *shlex.split(command)[1:]], check=True, capture_output=True)
+    browser.open("chosen.html")
+    wait_shown(browser, 1)
+    commands = browser.js("[...document.querySelectorAll('figure code')].map((c) => c.textContent)")
+    assert len(commands) >= 3 and all("--campaign 1 --where" in c and "seed < 3" in c for c in commands), commands
     for command in commands:
         subprocess.run([clast, *shlex.split(command)[1:]], check=True, capture_output=True)
     browser.open("apart.html")

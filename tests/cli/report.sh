@@ -248,6 +248,9 @@ PY
   expect 0 "$clast" compare small.db other.db
   says "a and b also differ in charge.energy (2000 J/m, 3000 J/m)"
   expect 0 "$clast" report small.db other.db -o two.html
+  expect 0 "$clast" report small.db --campaign 1 --where 'seed < 3' -o chosen.html
+  expect 0 "$clast" report small.db:4
+  says "small-4.html written"
   expect 0 "$clast" report small.db marked.db -o apart.html
   # The page's own mean and standard deviation do not depend on the unit.
   echo '{"type": "module"}' >package.json
@@ -268,7 +271,7 @@ JS
   expect 0 "$clast" report scenes.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 55
+  done_after 57
 else
   done_after 41
 fi
