@@ -18,6 +18,13 @@
 
 extern const char progress_sql[]; /* db/ask/progress.sql, which the build embeds */
 
+/* The earlier forms of campaigns, as in progress.sql: those whose points a later campaign of the name has. */
+#define EARLIER                                                                                                        \
+  "earlier AS (SELECT campaign_id FROM campaign WHERE EXISTS (SELECT 1 FROM campaign AS later WHERE later.name = "     \
+  "campaign.name AND later.campaign_id > campaign.campaign_id AND NOT EXISTS (SELECT 1 FROM campaign_point AS p "      \
+  "WHERE p.campaign_id = campaign.campaign_id AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE "  \
+  "q.campaign_id = later.campaign_id))))"
+
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error) {
   const struct query_parameter parameters[] = {{"writing", writing ? "1" : "0"}, {"earlier", earlier ? "1" : "0"}};
   return answer_to_user(store, progress_sql, 2, parameters, 0, error);
@@ -36,12 +43,7 @@ void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *share
   *earlier = *shared = *runs = 0;
   ANSWER answer = answer_to(
       store, &error,
-      "WITH earlier AS (SELECT campaign_id FROM campaign WHERE EXISTS (SELECT 1 FROM campaign AS later WHERE "
-      "later.name "
-      "= campaign.name AND later.campaign_id > campaign.campaign_id AND NOT EXISTS (SELECT 1 FROM campaign_point AS p "
-      "WHERE p.campaign_id = campaign.campaign_id AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q "
-      "WHERE "
-      "q.campaign_id = later.campaign_id)))),\n"
+      "WITH " EARLIER ",\n"
       "shared AS (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE campaign_id NOT IN "
       "earlier GROUP BY point_id HAVING count(DISTINCT iif(%s, name, campaign_id)) > 1)\n"
       "SELECT (SELECT count(*) FROM earlier JOIN campaign USING (campaign_id) WHERE NOT %s), (SELECT count(*) FROM "
@@ -178,10 +180,10 @@ struct answer ask_campaign_different_inputs(struct store *store, struct error *e
 static struct answer ask_judged(struct store *store, const char *question, struct error *error) {
   return answer_to(
       store, error,
-      "WITH judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS "
+      "WITH " EARLIER ", judged AS (SELECT campaign_id, point_id, identity, state, message, %s AS drift, %g AS "
       "drift_allowed, coalesce(warnings, '') AS warnings, CASE WHEN state NOT IN ('completed', 'end-time') "
       "THEN 'refused' WHEN doubtful THEN 'warned' ELSE 'safe' END AS class FROM "
-      "campaign_point JOIN runs USING (point_id) WHERE surplus < 2) %s",
+      "campaign_point JOIN runs USING (point_id) WHERE surplus < 2 AND campaign_id NOT IN earlier) %s",
       OUTCOME_NAME(energy_error), CONDITION_LARGEST_DRIFT, question);
 }
 

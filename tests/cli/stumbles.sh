@@ -97,6 +97,8 @@ expect 0 "$clast" status all.db
 says "left out: 1 earlier form of a campaign"
 says "campaigns share 1 point"
 says "together they have 9 runs"
+expect 0 "$clast" extremes all.db --csv
+same "$(grep -c '^grow,' out)" 1 "rows of a campaign with an earlier form"
 # Tables of pools name the result and the varied inputs; a symbol of a table leads to its result.
 expect 0 "$clast" scatter few.db -Q fragment_count
 says "values of fragment_count"
@@ -128,4 +130,4 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 35
+done_after 37
