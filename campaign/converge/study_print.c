@@ -294,8 +294,9 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
 /* The limit with the scatter of the seeds in its interval. The distance of the scene's own level is known far better:
  * equal seeds have the same scatter at all levels. */
 static void print_seen(const struct convergence_limit_row *limit, const struct study_found *found, FILE *out) {
-  fprintf(out, "limit %.5g (%.5g to %.5g, seeds included), mean over laws of order %.2g to %.2g (best: %.2g); ", limit->limit.value,
-          limit->limit.low, limit->limit.high, limit->order.low, limit->order.high, limit->order.value);
+  fprintf(out, "limit %.5g (%.5g to %.5g, seeds included), mean over laws of order %.2g to %.2g (best: %.2g); ",
+          limit->limit.value, limit->limit.low, limit->limit.high, limit->order.low, limit->order.high,
+          limit->order.value);
   char text[UNCERTAINTY_TEXT];
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].base && found->rows[l].resolution > 0 && !found->rows[l].open)
