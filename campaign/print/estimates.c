@@ -193,13 +193,16 @@ static status print_point(struct printing *printing, const struct ask_points_row
   TRY(point_read(printing->store, row->point_id, row->results_version, &point, error));
   TRY(point_estimates(&point, 0.95, fits, error));
   const struct point_estimate *masses = &fits[MASSES * ESTIMATES_WINDOWS];
+  struct ask_points_row shown = *row;
+  if (point.runs.first[point.runs.count] == 0) /* a program tells no fragments: the store has 0 */
+    shown.mean = NAN;
   for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
     const bool same = window &&
                       fabs(masses[window].exponent.fit.lower / masses[window - 1].exponent.fit.lower - 1) < 1e-9;
     if (!table_for_people(printing->format))
       TRY(row_for_programs(printing, row, window, fits, &doubts, error));
     else if (window == 0 || (masses[window].exponent.fit.n > 0 && !same))
-      TRY(row_for_people(printing, row, window, fits, &doubts, error)); /* people do not need an empty row */
+      TRY(row_for_people(printing, &shown, window, fits, &doubts, error)); /* people do not need an empty row */
     printing->seen.same |= same && masses[window].exponent.fit.n > 0;
   }
   return STATUS_OK;

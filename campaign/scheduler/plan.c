@@ -443,6 +443,9 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   const bool trial = !options->no_trial && (!scene || !engine_ready(scene->kind, scene->inputs, &ignored));
   if (code == STATUS_OK && trial)
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
+  if (code == STATUS_OK && !trial && looking.timed == 0 && store &&
+      !scene->kind->work) /* all points count as one work */
+    code = ask_run_wall_times(store, scene->name, &looking.timed, &looking.wall_s, &looking.wall_s_most, error);
   if (code == STATUS_OK) {
     plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs, options->all) : NULL;
     if (scene->kind->work) /* else all points count as one work */
@@ -479,7 +482,7 @@ static const char *bytes(double count, char *buffer, size_t size) {
 /* Where the times of a run come from. */
 static const char *how_timed(const struct plan *plan) {
   if (!plan->trial_made)
-    return " (from its runs in the store)";
+    return " (from runs in the store)";
   if (plan->trial_finished)
     return " (whole runs timed)";
   if (plan->trial_whole)

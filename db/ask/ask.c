@@ -730,6 +730,20 @@ status ask_run_wall_time(struct store *store, const uint8_t identity[16], double
   return answer_number(store, seconds, error, "SELECT wall_time FROM run WHERE identity = x'%s'", hexadecimal);
 }
 
+status ask_run_wall_times(struct store *store, const char *scene, uint64_t *count, double *sum, double *most,
+                          struct error *error) {
+  ANSWER answer = answer_to(store, error,
+                            "SELECT count(wall_time), sum(wall_time), max(wall_time) FROM run JOIN point USING "
+                            "(point_id) WHERE scene_name = %Q",
+                            scene);
+  if (answer_next(&answer)) {
+    *count = (uint64_t)answer_integer(&answer, 0);
+    *sum = answer_real(&answer, 1);
+    *most = answer_real(&answer, 2);
+  }
+  return answer_end(&answer);
+}
+
 struct answer ask_run_kept(struct store *store, struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_TABLE];
   const char *results[VIEWS_STATISTICS_MAIN];

@@ -57,6 +57,8 @@ expect 0 "$clast" simulate mark.yaml $word
 [ -e touched ] || fail "the program was not run with the user's word"
 ! grep -q "M_1/M" out || fail "a program without fragments has a largest one"
 expect 0 "$clast" run mark-runs.yaml $word
+expect 0 "$clast" estimates mark.db
+grep -qE "^ +1 +1 +- " out || fail "a program without fragments has a largest one in a table"
 rm touched
 expect 64 "$clast" replay mark.db 1
 expect 0 "$clast" report mark.db
@@ -360,6 +362,8 @@ expect 0 "$clast" converge slow.yaml $word --knob a=1,2 -Q x --seeds 4 --max-see
 (sed 's/^name: .*/name: search/; s/modulus: .*/modulus: {from: 1.5, to: 10, n: 2}}/; s/quantity: .*//' one.yaml; echo 'set: {fibres: 300}') >search.yaml
 expect 0 "$clast" find search.yaml $word --quantity strength --level 0.5 --within 40%
 prints "rises through 0.5"
+expect 0 "$clast" find search.yaml --quantity strength --level 0.5 --within 0.1% --plan
+prints "for the most expensive (from runs in the store)"
 "$clast" serve search.yaml $word --port 0 -Q strength >/dev/null 2>serve.err &
 pid=$!
 for _ in $(seq 100); do grep -q 'at port' serve.err && break; sleep 0.1; done
@@ -399,4 +403,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 148
+done_after 150

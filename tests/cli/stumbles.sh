@@ -122,7 +122,7 @@ sed 's/: few/: more/; s/\[2 deg, 6 deg\]/[3 deg]/' few.yaml >more.yaml
 expect 0 "$clast" plan more.yaml --no-trial
 prints "time      not known without a trial run"
 expect 0 "$clast" plan few.yaml --no-trial
-prints "(from its runs in the store)"
+prints "(from runs in the store)"
 expect 0 "$clast" plan few.yaml --no-trial --store elsewhere.db
 prints "for the store elsewhere.db"
 # Documents of scenes have lines that a terminal shows.
