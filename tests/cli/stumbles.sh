@@ -98,7 +98,7 @@ says "left out: 1 earlier form of a campaign"
 says "campaigns share 1 point"
 says "together they have 9 runs"
 expect 0 "$clast" extremes all.db --csv
-same "$(grep -c '^grow,' out)" 1 "rows of a campaign with an earlier form"
+same "$(grep -c '^grow,' out)" 2 "campaigns without the earlier form of one"
 # Tables of pools name the result and the varied inputs; a symbol of a table leads to its result.
 expect 0 "$clast" scatter few.db -Q fragment_count
 says "values of fragment_count"
