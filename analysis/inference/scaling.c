@@ -15,9 +15,9 @@ static const double CLEAR = 2;             /* standard errors by which curves di
 static const double WINDOWS[] = {2, 3, 4}; /* half widths in ln r, about the crossing */
 enum { REGULAR_SIZES = 4 };                /* with fewer sizes S has no regular part */
 enum { IN_WINDOW = 4 };                    /* cells of a size that are enough */
-static const double SHIFTS = 1.8, CURVE_SHIFTS = 1.2; /* in the interval; scaling.h */
-static const double TOLD = 0.9;                       /* share of the draws that have a value */
-static const double PRIOR = 4; /* runs that the common scatter counts as, beside those of a cell */
+static const double TOLD = 0.9;            /* share of the draws that have a value */
+static const double PRIOR = 4;             /* runs that the common scatter counts as, beside those of a cell */
+static const double LEAST_SPREAD = 1e-12;  /* variance of equal runs: they have equal weights */
 static const double NOT_ONE = 4, NOT_ONE_SHARE = 0.1; /* chi-square and distance of curves that are not one */
 
 const char *const scaling_kind_names[] = {"found", "jump", "too-few", "no-crossing", "not-one-curve", "not-told", NULL};
@@ -45,6 +45,7 @@ struct study {
   double longest;                  /* ln L of the largest size */
   size_t terms;                    /* of the polynomials */
   double regular;                  /* part of S, of the last slope that was fitted; 0: none */
+  double left;                     /* share of a shift, set_left() */
 };
 
 struct curve { /* of ln r: a polynomial in (t - at) (L/longest)^power */
@@ -86,16 +87,17 @@ static void write_sums(const struct scaling_run *run, double elements, double su
 static void fill_cells(struct study *s, uint64_t draw, double (*sum)[SUMS], double (*weight)[2]) {
   double w = 1;
   size_t level = 0;
+  double elements = pow(s->size[0], s->dimensions);
   memset(sum, 0, s->cells * sizeof *sum);
   memset(weight, 0, s->cells * sizeof *weight);
   for (size_t r = 0; r < s->runs; r++) {
     const struct scaling_run *run = &s->run[r];
     double add[SUMS];
-    while (s->size[level] < run->size)
-      level++;
+    if (s->size[level] < run->size)
+      elements = pow(s->size[++level], s->dimensions);
     if (draw && (r == 0 || run->seed != run[-1].seed || run->size != run[-1].size))
       w = -log1p(-random_draw(draw, RANDOM_RESAMPLE, run->seed, level));
-    write_sums(run, pow(run->size, s->dimensions), add);
+    write_sums(run, elements, add);
     for (int k = 0; k < SUMS; k++)
       sum[s->of[r]][k] += w * add[k];
     weight[s->of[r]][0] += w;
@@ -137,8 +139,8 @@ static void mix_spread(struct study *s) {
     }
   for (size_t c = 0; c < s->cells; c++)
     for (int k = 0; k < CURVES; k++)
-      s->cell[c].spread[k] = ((s->cell[c].runs - 1) * s->cell[c].spread[k] + PRIOR * common[k] / n) /
-                             (s->cell[c].runs - 1 + PRIOR);
+      s->cell[c].spread[k] = fmax(LEAST_SPREAD, ((s->cell[c].runs - 1) * s->cell[c].spread[k] + PRIOR * common[k] / n) /
+                                                    (s->cell[c].runs - 1 + PRIOR));
 }
 
 static status gather(struct study *s, size_t n, const struct scaling_run *runs, struct error *error) {
@@ -320,9 +322,9 @@ static double linearise(const struct study *s, size_t from, const struct curve *
     }
     row[0] = -slope * exp(curve->power * l);
     row[1] = slope * z * l;
-    const double off = cell->y[RATIO] - value;
-    add_row(n, row, off, cell->runs, matrix, side);
-    sum += cell->runs * off * off;
+    const double off = cell->y[RATIO] - value, weight = cell->runs / cell->spread[RATIO];
+    add_row(n, row, off, weight, matrix, side);
+    sum += weight * off * off;
   }
   return sum;
 }
@@ -379,7 +381,7 @@ static double fit_slope(struct study *s, size_t from, const struct curve *curve,
       row[k] = row[k - 1] * place(s, curve, cell);
     if (regular) /* ln(S - b) = ln S - b/S */
       row[n - 1] = exp(-cell->y[SECOND]);
-    add_row(n, row, cell->y[which], cell->runs, matrix, side);
+    add_row(n, row, cell->y[which], cell->runs / cell->spread[which], matrix, side);
   }
   s->regular = 0;
   if (!covariance_factor(n, matrix))
@@ -400,12 +402,53 @@ static void tell_values(struct study *s, size_t from, const struct curve *curve,
   value[SCALING_TAU] = 3 - value[SCALING_GAMMA] / value[SCALING_CUTOFF];
 }
 
-/* Fits the sizes from.., beginning at *curve, where the fit leaves its result. */
-static void fit_all(struct study *s, size_t from, struct curve *curve, double value[SCALING_VALUES]) {
+/* Of a slope against ln L whose corrections fall as 1/L: what is left of them without the smallest size, over the
+ * change when that size is dropped. */
+static void set_left(struct study *s) {
+  double slope[2];
+  for (size_t from = 0; from < 2; from++) {
+    double n = 0, x = 0, xx = 0, y = 0, xy = 0;
+    for (size_t c = s->first[from]; c < s->cells; c++) {
+      const double w = s->cell[c].used ? s->cell[c].runs : 0, l = log(s->size[s->cell[c].level]) - s->longest;
+      n += w;
+      x += w * l;
+      xx += w * l * l;
+      y += w * exp(-l);
+      xy += w * l * exp(-l);
+    }
+    slope[from] = (n * xy - x * y) / (n * xx - x * x);
+  }
+  s->left = slope[1] / (slope[0] - slope[1]);
+}
+
+enum { WITHOUT, OWN, CURVE, PARTS };
+struct fitted {
+  double part[PARTS][SCALING_VALUES]; /* without the smallest size; the half ways that its shifts tell (scaling.h) */
+  double shift[SCALING_VALUES];
+};
+
+/* Fits ln r without and with the smallest size, beginning at the two curves, and leaves the curves there. */
+static struct fitted fit_all(struct study *s, struct curve curve[2]) {
+  struct fitted fitted;
+  double with[2][SCALING_VALUES], other[SCALING_VALUES];
   for (int v = 0; v < SCALING_VALUES; v++)
-    value[v] = NAN;
-  if (!isnan(fit_ratio(s, from, curve)))
-    tell_values(s, from, curve, value);
+    fitted.shift[v] = fitted.part[WITHOUT][v] = fitted.part[OWN][v] = fitted.part[CURVE][v] = NAN;
+  if (isnan(fit_ratio(s, 1, &curve[0])))
+    return fitted;
+  tell_values(s, 1, &curve[0], fitted.part[WITHOUT]);
+  if (isnan(fit_ratio(s, 0, &curve[1])))
+    return fitted;
+  tell_values(s, 1, &curve[1], other);
+  for (int k = 0; k < 2; k++)
+    tell_values(s, 0, &curve[k], with[k]);
+  for (int v = 0; v < SCALING_VALUES; v++) {
+    const double value = fitted.part[WITHOUT][v];
+    const double at[2] = {value - with[0][v], other[v] - with[1][v]}; /* shifts at a curve: 0 of x_c and nu */
+    fitted.part[OWN][v] = s->left / 2 * (at[0] + s->left / 2 * (at[0] - at[1]));
+    fitted.part[CURVE][v] = s->left / 2 * (value - other[v]);
+    fitted.shift[v] = value - with[1][v];
+  }
+  return fitted;
 }
 
 /* The best fit from several guesses. */
@@ -484,33 +527,50 @@ static void collapse(const struct study *s, const struct curve *curve, int which
 
 /* ---- the answer ---- */
 
-/* Draws weights of whole runs, fits again, and sets the intervals. */
-static status resample(struct study *s, const struct curve *best, const double *bias, struct scaling *out,
+/* Standard deviation over the draws of a sum of shares of the parts. *n: the draws that have it. */
+static double scatter(const struct fitted *drawn, int v, const double share[PARTS], size_t *n) {
+  struct sample_moments moments = {0};
+  for (int draw = 0; draw < DRAWS; draw++)
+    sample_add(&moments, share[WITHOUT] * drawn[draw].part[WITHOUT][v] + share[OWN] * drawn[draw].part[OWN][v] +
+                             share[CURVE] * drawn[draw].part[CURVE][v]);
+  *n = moments.n;
+  return sample_summarise_moments(&moments, 0.95).standard_deviation;
+}
+
+/* Draws weights of whole runs, fits again, and sets values and intervals. */
+static status resample(struct study *s, const struct curve best[2], const struct fitted *fitted, struct scaling *out,
                        struct error *error) {
-  struct sample_moments moments[SCALING_VALUES] = {{0}};
-  double least = HUGE_VAL, value[SCALING_VALUES];
+  struct fitted drawn[DRAWS];
+  double least = HUGE_VAL;
   OWNED double(*sum)[SUMS] = NULL;
   OWNED double(*weight)[2] = NULL;
   TRY(memory_array(&sum, s->cells, sizeof *sum, "resampled runs", error));
   TRY(memory_array(&weight, s->cells, sizeof *weight, "resampled runs", error));
-  for (size_t level = 1; level < s->levels; level++)
+  for (size_t level = 0; level < s->levels; level++)
     least = fmin(least, s->seeds[level]);
-  for (uint64_t draw = 1; draw <= DRAWS; draw++) {
-    struct curve curve = *best;
-    fill_cells(s, draw, sum, weight);
-    fit_all(s, 1, &curve, value);
-    for (int v = 0; v < SCALING_VALUES; v++)
-      sample_add(&moments[v], value[v]);
+  for (int draw = 0; draw < DRAWS; draw++) {
+    struct curve curve[2] = {best[0], best[1]};
+    fill_cells(s, 1 + (uint64_t)draw, sum, weight);
+    drawn[draw] = fit_all(s, curve);
   }
   fill_cells(s, 0, sum, weight);
   /* These weights scatter by (n - 1)/(n + 1) of the variance of a mean of n runs. */
-  const double times = sample_student((size_t)least, 0.95) * sqrt((least + 1) / (least - 1));
+  const double times = sqrt((least + 1) / (least - 1)), student = sample_student((size_t)least, 0.95);
   for (int v = 0; v < SCALING_VALUES; v++) {
-    const struct sample_summary drawn = sample_summarise_moments(&moments[v], 0.95);
-    struct scaling_estimate *told = &out->value[v];
-    told->half_width = hypot(times * drawn.standard_deviation, bias[v]);
-    if (moments[v].n < TOLD * DRAWS || !isfinite(told->half_width)) /* most resampled runs have no such value */
-      *told = (struct scaling_estimate){NAN, NAN, NAN};
+    struct scaling_estimate told = {.estimate = fitted->part[WITHOUT][v], .shift = fitted->shift[v]};
+    double share[PARTS] = {1, 0, 0}, halves = 0;
+    size_t n = 0;
+    for (int k = OWN; k <= CURVE; k++) {
+      const double half = fitted->part[k][v];
+      const double noise = times * scatter(drawn, v, (const double[PARTS]){0, k == OWN, k == CURVE}, &n);
+      share[k] = half != 0 ? half * half / (half * half + noise * noise) : 0;
+      told.estimate += share[k] * half;
+      halves += fabs(half);
+    }
+    told.half_width = hypot(student * times * scatter(drawn, v, share, &n), halves);
+    if (n < TOLD * DRAWS || !isfinite(told.half_width)) /* most resampled runs have no such value */
+      told = (struct scaling_estimate){NAN, NAN, NAN};
+    out->value[v] = told;
   }
   return STATUS_OK;
 }
@@ -530,7 +590,7 @@ static bool is_inside(const struct study *s, double x) {
 }
 
 static status answer(struct study *s, struct scaling *out, struct error *error) {
-  double ratio, all[SCALING_VALUES], value[SCALING_VALUES];
+  double ratio;
   if (s->levels < SCALING_LEAST_SIZES)
     return STATUS_OK;
   out->kind = SCALING_NO_CROSSING;
@@ -547,13 +607,13 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
   s->terms = used >= 10 ? TERMS : used >= 7 ? 3 : 2;
   mix_spread(s);
   out->kind = SCALING_NOT_TOLD;
-  struct curve best = first_fit(s, 1, ratio), with_smallest = best;
-  fit_all(s, 1, &best, value);
-  fit_all(s, 0, &with_smallest, all);
-  collapse(s, &best, ORDER, -value[SCALING_BETA], &out->chi_square[0], &out->distance[0]);
-  fit_slope(s, 1, &best, SECOND); /* its regular part */
-  collapse(s, &best, SECOND, value[SCALING_GAMMA], &out->chi_square[1], &out->distance[1]);
-  if (isnan(out->chi_square[0] + out->chi_square[1]) || !is_inside(s, value[SCALING_CRITICAL])) {
+  struct curve best = first_fit(s, 1, ratio), curve[2] = {best, best};
+  set_left(s);
+  const struct fitted fitted = fit_all(s, curve);
+  collapse(s, &curve[0], ORDER, -fitted.part[WITHOUT][SCALING_BETA], &out->chi_square[0], &out->distance[0]);
+  fit_slope(s, 1, &curve[0], SECOND); /* its regular part */
+  collapse(s, &curve[0], SECOND, fitted.part[WITHOUT][SCALING_GAMMA], &out->chi_square[1], &out->distance[1]);
+  if (isnan(out->chi_square[0] + out->chi_square[1]) || !is_inside(s, fitted.part[WITHOUT][SCALING_CRITICAL])) {
     for (int k = 0; k < 2; k++)
       out->chi_square[k] = out->distance[k] = NAN;
     return STATUS_OK;
@@ -562,17 +622,7 @@ static status answer(struct study *s, struct scaling *out, struct error *error) 
   for (int k = 0; k < 2; k++)
     if (!(out->chi_square[k] < NOT_ONE || out->distance[k] < NOT_ONE_SHARE))
       return STATUS_OK;
-  double with_own[SCALING_VALUES], with_curve[SCALING_VALUES], bias[SCALING_VALUES];
-  tell_values(s, 0, &best, with_own);
-  tell_values(s, 1, &with_smallest, with_curve);
-  for (int v = 0; v < SCALING_VALUES; v++) {
-    out->value[v].estimate = value[v];
-    out->value[v].shift = value[v] - all[v];
-    bias[v] = v == SCALING_CRITICAL || v == SCALING_NU
-                  ? SHIFTS * fabs(out->value[v].shift)
-                  : SHIFTS * fabs(value[v] - with_own[v]) + CURVE_SHIFTS * fabs(value[v] - with_curve[v]);
-  }
-  TRY(resample(s, &best, bias, out, error));
+  TRY(resample(s, curve, &fitted, out, error));
   const struct scaling_estimate *nu = &out->value[SCALING_NU];
   out->may_jump = within(&out->value[SCALING_BETA], 0) && nu->estimate - nu->half_width <= 1.0 / s->dimensions;
   const bool jump = out->may_jump && nu->estimate + nu->half_width < 2.0 / s->dimensions;

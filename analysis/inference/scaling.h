@@ -15,13 +15,16 @@
  * From four sizes on, S has a regular part b beside the critical one (the many small fragments that know nothing of the
  * transition): ln S and ln T/S get a term b/S.
  *
- * The estimate is that without the smallest size. Its half width is the root of the sum of squares of two: the scatter
- * over whole runs (weights from an exponential law for each seed of a size, Rubin 1981, doi 10.1214/aos/1176345338;
- * Student's t for few seeds), and a bound of the bias by corrections to scaling, from how far the values move when the
- * smallest size is dropped. The bound is 1.8 times the shift of x_c, of nu, and of a slope at the same x_c and nu, and
- * besides 1.2 times the shift of a slope that comes from those of x_c and nu. With five sizes that double, a correction
- * that falls as 1/L leaves 1.8 times the shift in a slope and 1.2 in x_c, one that falls as L^(-3/2) 0.9 and 0.8 times.
- * Corrections that fall more slowly may be larger. Measured: tests/verification/scaling.md. */
+ * The shift of a value when the smallest size is dropped tells of corrections to scaling. If they fall as 1/L, a
+ * multiple of it is still to come (of a slope 1.8 times the shift, for four sizes or more that double, with as many
+ * runs each); if they fall faster, less is. The estimate lies between: it is the value without the smallest size and
+ * half of that way, and the half way is in the half width, too. There are two ways: that of a value at given x_c and
+ * nu, and that of x_c and nu, with what they do to the value. A shift scatters itself: the estimate goes only a share
+ * of the half way, its square over this square and its variance, and the half widths add the whole of both halves.
+ *
+ * The half width is the root of the sum of squares of that and of the scatter over whole runs: weights from an
+ * exponential law for each seed of a size (Rubin 1981, doi 10.1214/aos/1176345338), Student's t for few seeds.
+ * Corrections that fall more slowly than 1/L may be larger. Measured: tests/verification/scaling.md. */
 #ifndef CLAST_ANALYSIS_INFERENCE_SCALING_H
 #define CLAST_ANALYSIS_INFERENCE_SCALING_H
 
@@ -70,8 +73,7 @@ struct scaling {
   double crossing, about[2], nearest, nearest_q[2], range[2];
   bool differ, touch; /* by two standard errors somewhere; not by them at the nearest value */
   bool may_jump;      /* values of a jump are inside the intervals */
-  /* x_c, nu, beta/nu, gamma/nu, D, tau. `shift`, without the smallest size less with it, is
-   * part of half_width */
+  /* x_c, nu, beta/nu, gamma/nu, D, tau. `shift`: without the smallest size less with it */
   struct scaling_estimate {
     double estimate, half_width, shift;
   } value[SCALING_VALUES];

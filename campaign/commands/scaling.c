@@ -17,7 +17,7 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("size", 0, "INPUT", struct options, choice.size, NULL),
     OPTION_ROW_TEXT("control", 0, "INPUT", struct options, choice.control, NULL),
     OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, choice.quantity, OUTCOME_DEFAULT),
-    OPTION_ROW_INTEGER("dimensions", 0, "D", struct options, choice.dimensions, 2, 3, 0),
+    OPTION_ROW_INTEGER("dimensions", 0, "D", struct options, choice.dimensions, 2, 2, 0),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
     CHART_OPTIONS(struct options, chart),
 };

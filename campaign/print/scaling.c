@@ -218,15 +218,12 @@ static status set_dimensions(struct points *points, int stated, struct error *er
     return status_fail(error, STATUS_USAGE,
                        "clast does not know whether the model of this store's program is plane: if it is, add "
                        "--dimensions 2 (L is the number of elements to the power 1/2)");
-  if (points->dimensions != 0 && stated != 0 && stated != points->dimensions)
-    return status_fail(error, STATUS_USAGE, "--dimensions is for programs (`engine: command`): these scenes have %d",
-                       points->dimensions);
   points->dimensions = points->dimensions ? points->dimensions : stated;
   return points->dimensions == 2
              ? STATUS_OK
              : status_fail(error, STATUS_USAGE,
-                           "clast scaling is for scenes in the plane: for bodies in space its intervals are too "
-                           "narrow (of a cubic lattice, 10 of 20 held beta/nu)");
+                           "clast scaling is for scenes in the plane: in space its intervals were measured on small "
+                           "lattices alone");
 }
 
 /* Sizes as lengths in elements; sums of squares and cubes in elements, over their number. */
@@ -468,7 +465,7 @@ status print_scaling(struct store *store, const struct scaling_choice *choice, e
     words_print(stderr, "",
                 "clast: %zu runs, sizes by %s; L is the number of grains or particles to the power 1/%d. P: the "
                 "mean of %s. S: mean mass of a fragment without the largest one, in elements. 95 %% intervals over "
-                "whole runs, with the shift: without the smallest size less with it",
+                "whole runs and hold what the shift tells: without the smallest size less with it",
                 found.runs, points.axis[points.size].word, points.dimensions, quantity);
     uncertainty_doubts(&points.doubts, stderr);
   }

@@ -86,7 +86,7 @@ void option_doc(const struct command *command, const struct option_row *row, cha
   doc[size] = '\0';
   if (row->doc)
     snprintf(doc, OPTION_DOC, "%s", row->doc);
-  if (row->kind == OPTION_INTEGER && row->minimum > 1)
+  if (row->kind == OPTION_INTEGER && row->minimum > 1 && row->maximum > row->minimum)
     text_append(doc, OPTION_DOC, " From %" PRId64 " to %" PRId64 ".", row->minimum, row->maximum);
 }
 
@@ -107,7 +107,9 @@ static status take_integer(const struct command *command, const struct option_ro
     *out = number;
     return STATUS_OK;
   }
-  if (row->maximum == INT64_MAX)
+  if (row->maximum == row->minimum)
+    snprintf(range, sizeof range, "that is %" PRId64, row->minimum);
+  else if (row->maximum == INT64_MAX)
     snprintf(range, sizeof range, "from %" PRId64 " up", row->minimum);
   else
     snprintf(range, sizeof range, "from %" PRId64 " to %" PRId64, row->minimum, row->maximum);

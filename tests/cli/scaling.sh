@@ -72,7 +72,7 @@ says "no input varies at a size"
 expect 64 "$clast" scaling law.db --size speed
 says "speed does not set the number of grains or particles; diameter does"
 expect 64 "$clast" scaling law.db --dimensions 3
-says "these scenes have 2"
+says "expects a whole number that is 2"
 expect 0 "$clast" scaling law.db --where "collision_speed > 20"
 grep -q '^No crossing: from 24 to 40 m/s' out && grep -q 'Next: ' out || fail "no next step"
 ! grep -qi 'nan' out || fail "NaN"
@@ -140,7 +140,7 @@ expect 0 "$clast" run sides.yaml --allow-commands --quiet
 expect 64 "$clast" scaling sides.db
 says "whether the model of this store's program is plane: if it is, add --dimensions 2"
 expect 64 "$clast" scaling sides.db --dimensions 3
-says "for bodies in space its intervals are too narrow"
+says "expects a whole number that is 2"
 expect 0 "$clast" scaling sides.db --dimensions 2
 says "40 runs, sizes by side; L is the number of grains or particles to the power 1/2"
 expect 0 "$clast" scaling sides.db --dimensions 2 --csv
