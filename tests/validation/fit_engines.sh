@@ -6,7 +6,7 @@ clast=$(realpath "$1")/clast
 work=$(mktemp -d "$1/fit-engines-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-exec /usr/bin/python3 - "$clast" "${CLAST_SEEDS:-0}" "${CLAST_FULL:-}${CLAST_SEEDS:-}" <<'PY'
+/usr/bin/python3 - "$clast" "${CLAST_SEEDS:-0}" "${CLAST_FULL:-}${CLAST_SEEDS:-}" <<'PY'
 import json, math, os, random, subprocess, sys
 
 clast, asked, full = sys.argv[1], int(sys.argv[2]), bool(sys.argv[3])
