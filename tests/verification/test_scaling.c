@@ -272,7 +272,7 @@ static void percolation_on_the_square_lattice(void **state) {
   check(getenv("CLAST_FULL") ? &asked : &quick, true);
 }
 
-static void laws_that_chose_nothing(void **state) {
+static void other_laws(void **state) {
   (void)state;
   for (size_t k = 0; getenv("CLAST_FULL") && k < sizeof others / sizeof *others; k++)
     check(&others[k], false);
@@ -281,7 +281,7 @@ static void laws_that_chose_nothing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(percolation_on_the_square_lattice),
-      cmocka_unit_test(laws_that_chose_nothing),
+      cmocka_unit_test(other_laws),
   };
   analysis_init();
   return cmocka_run_group_tests_name("scaling", tests, NULL, NULL);
