@@ -45,7 +45,7 @@ struct study {
   double longest;                  /* ln L of the largest size */
   size_t terms;                    /* of the polynomials */
   double regular;                  /* part of S, of the last slope that was fitted; 0: none */
-  double left;                     /* share of a shift, set_left() */
+  double left;                     /* multiple of a shift, set_left() */
 };
 
 struct curve { /* of ln r: a polynomial in (t - at) (L/longest)^power */
@@ -423,7 +423,7 @@ static void set_left(struct study *s) {
 
 enum { WITHOUT, OWN, CURVE, PARTS };
 struct fitted {
-  double part[PARTS][SCALING_VALUES]; /* without the smallest size; the half ways that its shifts tell (scaling.h) */
+  double part[PARTS][SCALING_VALUES]; /* without the smallest size; two half distances (scaling.h) */
   double shift[SCALING_VALUES];
 };
 

@@ -15,12 +15,12 @@
  * From four sizes on, S has a regular part b beside the critical one (the many small fragments that know nothing of the
  * transition): ln S and ln T/S get a term b/S.
  *
- * The shift of a value when the smallest size is dropped tells of corrections to scaling. If they fall as 1/L, a
- * multiple of it is still to come (of a slope 1.8 times the shift, for four sizes or more that double, with as many
- * runs each); if they fall faster, less is. The estimate lies between: it is the value without the smallest size and
- * half of that way, and the half way is in the half width, too. There are two ways: that of a value at given x_c and
- * nu, and that of x_c and nu, with what they do to the value. A shift scatters itself: the estimate goes only a share
- * of the half way, its square over this square and its variance, and the half widths add the whole of both halves.
+ * Corrections to scaling: a value shifts when the smallest size is dropped. If its corrections fall as 1/L, a known
+ * multiple of the shift is still missing (of a slope 1.8 times, for four sizes or more that double, with as many runs
+ * each); if they fall faster, less is. So the limit lies between the value without the smallest size and that of
+ * corrections as 1/L. The estimate is midway, and half of the distance is part of the half width. There are two such
+ * distances: of a value at given x_c and nu, and of x_c and nu, which move the value, too. A shift scatters itself: of
+ * a half distance h the estimate goes the share h^2/(h^2 + its variance) only; the half width has the whole of both.
  *
  * The half width is the root of the sum of squares of that and of the scatter over whole runs: weights from an
  * exponential law for each seed of a size (Rubin 1981, doi 10.1214/aos/1176345338), Student's t for few seeds.
