@@ -89,6 +89,17 @@ static void find_directions(const struct posterior_model *model, const struct po
   }
 }
 
+/* Slopes of a surface have the wiggles of its noise, and their squares add up. So the data determine all inputs only
+ * where the posterior's widest direction, too, has less than half the variance of the prior, which is 1. */
+static void bound_by_width(size_t p, const double *covariance, struct identify *out) {
+  double eigen[INFERENCE_INPUTS], vectors[INFERENCE_INPUTS * INFERENCE_INPUTS];
+  covariance_eigen(p, covariance, eigen, vectors);
+  if (out->determined < p || eigen[0] <= 0.5)
+    return;
+  out->determined = p - 1;
+  out->direction[p - 1].information = fmax(1 / eigen[0] - 1, 0);
+}
+
 void identify_find(const struct posterior_model *model, const struct posterior *posterior, struct identify *out) {
   double covariance[INFERENCE_INPUTS * INFERENCE_INPUTS];
   *out = (struct identify){.inputs = model->inputs};
@@ -100,6 +111,7 @@ void identify_find(const struct posterior_model *model, const struct posterior *
   }
   find_information(model, posterior, out);
   find_directions(model, posterior, covariance, out);
+  bound_by_width(model->inputs, covariance, out);
 }
 
 bool identify_mixed(const struct identify *found, size_t direction, size_t input) {

@@ -155,7 +155,8 @@ struct identify {
   double centre[INFERENCE_INPUTS];                       /* mean of the posterior */
   double kept[INFERENCE_INPUTS];                         /* width of the 90 % interval over that of the prior */
   struct identify_direction direction[INFERENCE_INPUTS]; /* in descending order of information */
-  size_t determined; /* number of directions with more information from the data than from the prior */
+  size_t determined; /* directions with more information from the data than from the prior; the last one only where the
+                        posterior is narrow in all */
 };
 
 /* The information is J^T C^-1 J, with J the slopes of the surfaces and C the covariance of the data about them. It is

@@ -67,13 +67,13 @@ void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t 
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size) {
   struct ask_resolution resolution;
   char words[UNCERTAINTY_TEXT] = "resolution: not known";
-  const char *before = "";
+  const char *after = "";
   if (ask_resolution(store, 0, quantity, &resolution, NULL) == STATUS_OK) {
     uncertainty_resolution(&resolution, words);
     if (resolution.studied > 0)
-      before = adds;
+      after = adds;
   }
-  snprintf(text, size, "%s%s", before, words);
+  snprintf(text, size, "%s%s", words, after);
 }
 
 void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {

@@ -36,7 +36,7 @@ status charts_axis(struct store *store, const char *column, char label[CHARTS_LA
 void charts_labels(const char *paths, char *labels, size_t size);
 /* "95 % intervals over seeds", or over points that differ in the pooled inputs, or of some marks each. */
 void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t size);
-/* Describes the known error of the resolution of a quantity at the points of the store, after `adds` if there is
+/* Describes the known error of the resolution of a quantity at the points of the store, before `adds` if there is
  * one. */
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
 

@@ -525,8 +525,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   if (*title >= 'a' && *title <= 'z')
     *title = (char)(*title - 'a' + 'A');
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
-  charts_resolution(store, quantity->name, "thin bars add what is known of the resolution: ", resolution,
-                    sizeof resolution);
+  charts_resolution(store, quantity->name, "; thin bars add what is known of it", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Error bars: %s; %s", intervals, resolution);
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);

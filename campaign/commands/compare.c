@@ -44,9 +44,12 @@ static status run(const struct command_line *line, struct error *error) {
                                                       "mean_b", "difference", "hw95", NULL});
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
-  bool equal = false;
-  for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);)
+  bool equal = false, part = false; /* part: runs without a partner */
+  for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);) {
     equal = print(table, people, &row, &doubts) || equal;
+    part |= row.difference.pairs &&
+            (row.difference.pairs < row.difference.n[0] || row.difference.pairs < row.difference.n[1]);
+  }
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
   for (int side = 0; side < 2; side++) {
@@ -66,6 +69,8 @@ static status run(const struct command_line *line, struct error *error) {
             "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
             ask_pairs_quantity(pairs));
+    if (part)
+      fputs("clast: means are of all runs; runs without a partner of their seed are not in the difference\n", stderr);
     if (equal)
       fputs("clast: no interval where all runs, or all differences, are equal to 14 digits: other seeds may differ\n",
             stderr);

@@ -742,12 +742,13 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
                 campaign->accuracy_of_value ? 130 * least / fabs(best->mean) : 1.3 * least,
                 campaign->accuracy_of_value ? " %" : unit);
   snprintf(smallest, sizeof smallest,
-           "The smallest error is %s%.2g%s%s%s, with %s, whose mean is %.4g%s (%" PRId64 " seeds)",
+           "The smallest error is %s%.2g%s%s%s, with %s%s mean is %.4g%s (%" PRId64 " seeds)",
            best->open ? "about " : "", least, unit, share,
            a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
            : best->open ? " (a guess, as no limit is seen)"
                         : "",
-           chosen, best->mean, unit, best->n);
+           chosen, best->extrapolated ? ", finer than any run: the finest level's" : ", whose", best->mean, unit,
+           best->n);
   if (best->open && !(least > 0))
     snprintf(smallest, sizeof smallest,
              "No run of the study differs between the settings, which does not tell how far "

@@ -44,7 +44,8 @@ static const struct field rows[] = {
         .flags = FIELD_ABOVE_MINIMUM | FIELD_ANY_UNIT,
         .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this: a "
                "value of the quantity (17 MPa), or a share of its mean (5 %). Judged on "
-               "fixed prefixes of replicate numbers. Tables then have no wider interval of this level, but where all "
+               "fixed prefixes of replicate numbers, with an interval wider than Student's: values that are alike by "
+               "chance do not end a point. Tables then have no wider interval of this level, but where all "
                "runs of a share are equal: there they have the bounds of what so few may have missed.",
         .source = "Chow & Robbins 1965"),
     ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,

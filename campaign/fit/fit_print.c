@@ -379,8 +379,10 @@ static void tell_study(const struct fit *fit, size_t s, FILE *out) {
   if (count == 0)
     return;
   if (campaign_write_study(shot->scene, fit->scene_reference, names, fit->campaign->store, command, sizeof command))
-    words_print(out, "", "RESOLUTION: a study tells it%s%s: `clast converge %s`",
-                fit->observed->shot_count > 1 ? " of " : "", fit->observed->shot_count > 1 ? shot->name : "", command);
+    words_print(
+        out, "",
+        "RESOLUTION: a study tells it%s%s, at the scene's own values of the unknown inputs: `clast converge %s`",
+        fit->observed->shot_count > 1 ? " of " : "", fit->observed->shot_count > 1 ? shot->name : "", command);
 }
 
 /* Names the data whose error of resolution is unknown, and what tells it. */

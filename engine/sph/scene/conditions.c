@@ -716,7 +716,8 @@ static void both_slopes(const void *inputs, double both[2]) {
 
 /* What an impact does to its target. */
 #define ALL_OF_AN_IMPACT                                                                                               \
-  "largest_fraction second_fraction dust_fraction mean_fragment_mass mean_fragment_mass_rest kinetic_energy_share "    \
+  "fragment_count single_count largest_fraction second_fraction dust_fraction mean_fragment_mass "                     \
+  "mean_fragment_mass_rest kinetic_energy_share "                                                                      \
   "first_damage undamaged_fraction mean_damage largest.bare_fraction largest.veneer_fraction "                         \
   "largest.dynamic_fraction largest.axis_middle largest.axis_short largest.speed second.mass second.angle "            \
   "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement crater.depth crater.radius crater.volume "         \
@@ -729,7 +730,8 @@ static void both_slopes(const void *inputs, double both[2]) {
   "largest.veneer_fraction largest.dynamic_fraction"
 
 #define OF_THE_LARGEST                                                                                                 \
-  "largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest largest.veneer_fraction "               \
+  "fragment_count single_count largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest "           \
+  "largest.veneer_fraction "                                                                                           \
   "largest.dynamic_fraction largest.axis_middle largest.axis_short largest.speed"
 
 const struct condition sph_conditions[] = {
