@@ -89,21 +89,13 @@ static void find_directions(const struct posterior_model *model, const struct po
   }
 }
 
-/* Slopes of a surface have the wiggles of its noise, and their squares add up. So the data determine all inputs only
- * where the posterior's widest direction, too, has less than half the variance of the prior, which is 1. */
-static void bound_by_width(size_t p, const double *covariance, struct identify *out) {
-  double eigen[INFERENCE_INPUTS], vectors[INFERENCE_INPUTS * INFERENCE_INPUTS];
-  covariance_eigen(p, covariance, eigen, vectors);
-  if (out->determined < p || eigen[0] <= 0.5)
-    return;
-  out->determined = p - 1;
-  out->direction[p - 1].information = fmax(1 / eigen[0] - 1, 0);
-}
-
 void identify_find(const struct posterior_model *model, const struct posterior *posterior, struct identify *out) {
-  double covariance[INFERENCE_INPUTS * INFERENCE_INPUTS];
+  double covariance[INFERENCE_INPUTS * INFERENCE_INPUTS], vectors[INFERENCE_INPUTS * INFERENCE_INPUTS];
+  double eigen[INFERENCE_INPUTS];
   *out = (struct identify){.inputs = model->inputs};
   posterior_moments(posterior, out->centre, covariance);
+  covariance_eigen(model->inputs, covariance, eigen, vectors);
+  out->widest = sqrt(eigen[0]);
   for (size_t i = 0; i < model->inputs; i++) {
     /* Widths are in quantiles of the prior, whose own 90 % interval is 0.9 wide. */
     const double low = posterior_quantile(posterior, i, 0.05), high = posterior_quantile(posterior, i, 0.95);
@@ -111,7 +103,6 @@ void identify_find(const struct posterior_model *model, const struct posterior *
   }
   find_information(model, posterior, out);
   find_directions(model, posterior, covariance, out);
-  bound_by_width(model->inputs, covariance, out);
 }
 
 bool identify_mixed(const struct identify *found, size_t direction, size_t input) {

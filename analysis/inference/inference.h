@@ -155,8 +155,9 @@ struct identify {
   double centre[INFERENCE_INPUTS];                       /* mean of the posterior */
   double kept[INFERENCE_INPUTS];                         /* width of the 90 % interval over that of the prior */
   struct identify_direction direction[INFERENCE_INPUTS]; /* in descending order of information */
-  size_t determined; /* directions with more information from the data than from the prior; the last one only where the
-                        posterior is narrow in all */
+  size_t determined; /* number of directions with more information from the data than from the prior */
+  double widest; /* largest standard deviation of the posterior along any direction: slopes, of which the information
+                    is made, have the wiggles of a surface's noise, whose squares add up; this width has not */
 };
 
 /* The information is J^T C^-1 J, with J the slopes of the surfaces and C the covariance of the data about them. It is

@@ -338,12 +338,13 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
   }
   words_print(out, "", "%s: median and 90 %% interval.", found);
-  if (known == p && as_wide && tell_line(fit, p, out))
+  const bool wide = as_wide || fit->found.widest > M_SQRT1_2;
+  if (known == p && wide && tell_line(fit, p, out))
     return;
-  if (known == p && as_wide)
-    words_print(out, "",
-                "The data tell more than the priors at most places, and yet they leave an input its whole range (share "
-                "of prior): inputs that are far apart give what was measured.");
+  if (known == p && wide)
+    words_print(out, "", "The data tell more than the priors at most places, and yet they leave %s.",
+                as_wide ? "an input its whole range (share of prior): inputs that are far apart give what was measured"
+                        : "a combination of inputs more than half of the prior's variance");
   else if (known == p)
     words_print(out, "", "The data determine %s: in every direction they tell more than the priors.",
                 p == 1 ? "the input" : "all inputs");
