@@ -951,7 +951,7 @@ INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, sh
 
 INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
+INSERT INTO column_doc VALUES ('estimates', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
@@ -1161,7 +1161,7 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard er
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
+INSERT INTO column_doc VALUES ('points', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns', 0);
 
 INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
 
@@ -1739,7 +1739,7 @@ INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
+INSERT INTO column_doc VALUES ('runs', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, 'above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both', 0);
 
@@ -1811,7 +1811,7 @@ INSERT INTO column_doc VALUES ('spectra', 'runs', '1', 'runs that count and have
 
 INSERT INTO column_doc VALUES ('spectra', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
-INSERT INTO column_doc VALUES ('spectra', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them', 0);
+INSERT INTO column_doc VALUES ('spectra', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'upper', 'kg', 'upper edge, outside the bin', 0);
 

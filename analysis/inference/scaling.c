@@ -112,15 +112,19 @@ static void fill_cells(struct study *s, uint64_t draw, double (*sum)[SUMS], doub
   }
 }
 
-/* Variance of one run in the four logarithms, to first order in its distance from the means. */
-static void fill_spread(struct study *s, double (*sum)[SUMS]) {
+/* Variance of one run in the four logarithms, to first order in its distance from the means; of an order that some runs
+ * lack, that of the mean of the others times all runs. */
+static void fill_spread(struct study *s, double (*sum)[SUMS], double (*weight)[2]) {
   for (size_t r = 0; r < s->runs; r++) {
     struct cell *cell = &s->cell[s->of[r]];
-    const double *mean = sum[s->of[r]], n = cell->runs;
+    const double *mean = sum[s->of[r]], n = cell->runs, have = weight[s->of[r]][1];
     double at[SUMS];
     write_sums(&s->run[r], pow(s->run[r].size, s->dimensions), at);
     for (int k = 0; k < SUMS; k++)
       at[k] = n * at[k] / mean[k] - 1;
+    at[SUM_ORDER] = isnan(s->run[r].order) ? 0
+                                           : (have * s->run[r].order / mean[SUM_ORDER] - 1) *
+                                                 sqrt(n / have * fmax(n - 1, 1) / fmax(have - 1, 1));
     const double off[CURVES] = {-at[SUM_SHARE] * (1 + exp(-cell->y[RATIO])), at[SUM_ORDER], at[SUM_SECOND],
                                 at[SUM_THIRD] - at[SUM_SECOND]};
     for (int k = 0; k < CURVES; k++)
@@ -685,7 +689,7 @@ status scaling_find(size_t n, const struct scaling_run *runs, int dimensions, st
   TRY(memory_array(&sum, s.cells, sizeof *sum, "the runs of several sizes", error));
   TRY(memory_array(&weight, s.cells, sizeof *weight, "the runs of several sizes", error));
   fill_cells(&s, 0, sum, weight);
-  fill_spread(&s, sum);
+  fill_spread(&s, sum, weight);
   TRY(answer(&s, out, error));
   return tell_cells(&s, out, error);
 }

@@ -343,8 +343,9 @@ static void tell_determined(const struct fit *fit, FILE *out) {
     return;
   if (known == p && wide)
     words_print(out, "", "The data tell more than the priors at most places, and yet they leave %s.",
-                as_wide ? "an input its whole range (share of prior): inputs that are far apart give what was measured"
-                        : "a combination of inputs more than half of the prior's variance");
+                as_wide  ? "an input its whole range (share of prior): inputs that are far apart give what was measured"
+                : p == 1 ? "the input more than half of the prior's variance"
+                         : "a combination of inputs more than half of the prior's variance");
   else if (known == p)
     words_print(out, "", "The data determine %s: in every direction they tell more than the priors.",
                 p == 1 ? "the input" : "all inputs");

@@ -121,14 +121,24 @@ static status read_data(struct fit *fit, struct store *store, const struct scene
       continue;
     text_append(results, sizeof results, "%s ", ask_specimens_result(&datum->ask));
     ANSWER runs = ask_specimens(store, point, scene->kind, &datum->ask, error);
-    while (ask_specimens_next(&runs, &datum->ask, &seed, &value, &fit->doubts[k]))
+    for (struct ask_doubts one = {0}; ask_specimens_next(&runs, &datum->ask, &seed, &value, &one);
+         one = (struct ask_doubts){0})
       for (size_t r = 0; r < count; r++)
-        if (seeds[r] == seed)
+        if (seeds[r] == seed) {
           of_datum[r] = fit_transform(datum, value);
+          ask_doubts_add(&fit->doubts[k], &one);
+        }
     TRY(answer_end(&runs));
   }
-  if (point)
-    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = point}, results, &fit->all_doubts, error));
+  if (point) {
+    OWNED char *own = NULL;
+    FILE *out = text_open(&own);
+    for (size_t r = 0; out && r < count; r++)
+      fprintf(out, "%s%" PRId64, r ? ", " : "seed IN (", (int64_t)seeds[r]);
+    if (!out || fputc(')', out) == EOF || !text_close(out, &own))
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = point, .where = own}, results, &fit->all_doubts, error));
+  }
   fit->all_doubts.chosen = NULL; /* it is the store's, which is closed when the answer is drawn */
   return STATUS_OK;
 }

@@ -355,7 +355,8 @@ static void write_answer(const struct points *points, const char *quantity, cons
   case SCALING_NOT_TOLD:
     text_append(text, sizeof text, "Too few runs for exponents: the sizes cross near %s, but %s.", near,
                 isnan(found->chi_square[0] + found->chi_square[1]) ? "no curve through that crossing fits them"
-                                                                   : "most resampled runs give no critical value");
+                                                                   : "they give no critical value with and without the "
+                                                                     "smallest size, or most resampled runs do not");
     add_next(points, found, text, sizeof text);
     break;
   }
@@ -462,11 +463,12 @@ status print_scaling(struct store *store, const struct scaling_choice *choice, e
   if (!table_for_people(format) || has_rows)
     TRY(print_rows(&points, quantity, &found, format, error));
   if (table_for_people(format)) {
-    words_print(stderr, "",
-                "clast: %zu runs, sizes by %s; L is the number of grains or particles to the power 1/%d. P: the "
-                "mean of %s. S: mean mass of a fragment without the largest one, in elements. 95 %% intervals over "
-                "whole runs and hold what the shift tells: without the smallest size less with it",
-                found.runs, points.axis[points.size].word, points.dimensions, quantity);
+    words_print(
+        stderr, "",
+        "clast: %zu runs, sizes by %s; L is the number of grains or particles to the power 1/%d. P: the "
+        "mean of %s. S: mean mass of a fragment without the largest one, in elements. 95 %% intervals over "
+        "whole runs, and hold what the shift tells. shift: the value without the smallest size, less that with it",
+        found.runs, points.axis[points.size].word, points.dimensions, quantity);
     uncertainty_doubts(&points.doubts, stderr);
   }
   return page ? draw(&points, quantity, &found, page, error) : STATUS_OK;

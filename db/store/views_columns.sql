@@ -8,7 +8,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
   SELECT v.column1, w.column1, NULL, w.column2
   FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v,
     (VALUES ('scene', 'name of the scene the inputs started from'),
-      ('study', '1: only studies and searches (clast converge, find, ...) asked for the point, not the other campaigns; no sample of them')) w;
+      ('study', '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns')) w;
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('runs', 'doubtful', '1', '1: the run breaks a condition, so that results are in doubt; clast explain WORD says what a word of warnings means'),
   ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded'),

@@ -45,6 +45,11 @@ expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --json
 says "0 found in the store"
 cmp -s out killed.json || fail "a fit that was killed reports something else"
 ok "killed and not killed: the same report"
+# Nor do runs of the same points with seeds that they share change it, with their doubts.
+sed 's/per_point: 3/per_point: 3, independent: false/' disc.yaml >alike.yaml
+expect 0 "$clast" fit one.yaml alike.yaml --rounds 3 -j 2 --store left.db --quiet
+expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --store left.db --json
+cmp -s out killed.json || fail "runs that the fit leaves out are in its report"
 expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --picture predicted.svg --keep-script
 says "0 runs computed"
 head -1 out | grep -qE '^threshold.strain [0-9.]+ % \([0-9.]+ to [0-9.]+\), threshold' || fail "the first line does not answer"
@@ -261,4 +266,4 @@ assert a['q05'] < 0.5 < a['q95'], a
 assert 0.045 < y['sd_seeds'] < 0.072, y  # 60 pairs tell it within 9 %
 PY
 ok "the scatter of seeds that act alike"
-done_after 39
+done_after 41

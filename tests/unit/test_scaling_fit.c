@@ -71,6 +71,23 @@ static void exact_runs_give_exact_values(void **state) {
   }
 }
 
+/* Runs without an order parameter leave the scatter of the others: the bars of P are wider by the root of 20/16. */
+static void runs_without_an_order(void **state) {
+  (void)state;
+  static struct scaling_run run[ALL];
+  SCALING all, part;
+  const size_t n = make(&(struct law){SIZES, 0.05, 0, 1}, run);
+  find(n, run, &all);
+  for (size_t i = 0; i < n; i += 5)
+    run[i].order = NAN;
+  find(n, run, &part);
+  assert_int_equal(part.kind, SCALING_FOUND);
+  double ratio = 0;
+  for (size_t c = 0; c < all.cells; c++)
+    ratio += part.cell[c].half_width[0] / all.cell[c].half_width[0] / (double)all.cells;
+  assert_near(ratio, sqrt(1.25), 0.1);
+}
+
 /* The interval has the width of the noise and holds the value; 95 % of six values may miss one. */
 static void intervals_hold_the_values(void **state) {
   (void)state;
@@ -295,6 +312,7 @@ static void whole_bodies_count(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(exact_runs_give_exact_values),
+      cmocka_unit_test(runs_without_an_order),
       cmocka_unit_test(intervals_hold_the_values),
       cmocka_unit_test(a_correction_is_inside_the_interval),
       cmocka_unit_test(the_order_of_runs_and_the_unit_of_x_change_nothing),
