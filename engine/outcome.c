@@ -2,7 +2,6 @@
 #include "engine/outcome.h"
 
 #include <math.h>
-#include <string.h>
 
 static FIELD_WORDS(states, OUTCOME_STATES, [OUTCOME_COMPLETED] = "completed", [OUTCOME_END_TIME] = "end-time",
                    [OUTCOME_NOT_FINITE] = "not-finite", [OUTCOME_TIME_STEP] = "time-step", [OUTCOME_ENERGY] = "energy",
@@ -89,12 +88,6 @@ bool outcome_counts(const struct outcome *outcome) {
       return false;
   }
   return true;
-}
-
-void outcome_withdraw(struct outcome *outcome) {
-  for (size_t i = 0; i < outcome_table.count; i++)
-    if (rows[i].main_rank && rows[i].kind == FIELD_REAL)
-      memcpy((char *)outcome + rows[i].offset, &(double){NAN}, sizeof(double));
 }
 
 /* value/mass; 0 where there is no mass. */

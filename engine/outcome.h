@@ -60,8 +60,6 @@ struct outcome_small {
   double complete; /* kg or kg/m: complete_mass */
 };
 
-/* Makes the main results NaN, which a store has as NULL: of a run without fragments that could be measured. */
-void outcome_withdraw(struct outcome *outcome);
 /* Fill the rows that follow from the fragments alone (by descending mass): total mass, counts, fractions, moments. */
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments,
                        const struct outcome_small *small);

@@ -208,7 +208,7 @@ class Store:
 
     def cube(self):
         """(dimensions, coordinates, variables): what to_xarray() makes a Dataset from. Where the points are a full grid,
-        the varied inputs are the dimensions; else there is one dimension, point_id. Of several results versions the
+        the inputs that differ are the dimensions; else there is one dimension, point_id. Of several results versions the
         newest is taken. Points that only studies and searches have are left out."""
         cursor = self.connection.execute(f"SELECT * FROM points WHERE {self._without(False)} ORDER BY point_id, "
                                          "results_version")

@@ -30,10 +30,13 @@ static status read_parameters(const struct options *options, struct parameters *
 /* A table of SQL has no marks: says that runs are in doubt, or of studies, unless the question asks for that. */
 static status tell_marks(struct store *store, const char *sql, struct error *error) {
   double doubtful = 0, of_studies = 0;
-  if (!(strcasestr(sql, "run") || strcasestr(sql, "point") || strcasestr(sql, "result_")))
+  const bool views = strcasestr(sql, "runs") || strcasestr(sql, "points") || strcasestr(sql, "spectra") ||
+                     strcasestr(sql, "estimates"); /* they have the column */
+  if (!(views || strcasestr(sql, "run") || strcasestr(sql, "point") || strcasestr(sql, "result_")))
     return STATUS_OK;
   TRY(ask_doubts_count(store, &doubtful, &of_studies, error));
-  if (of_studies > 0 && !strcasestr(sql, "study") && !strcasestr(sql, "point_id ="))
+  if (of_studies > 0 && views && !strcasestr(sql, "study") && !strcasestr(sql, "point_id") &&
+      !strcasestr(sql, "run_id"))
     fprintf(
         stderr,
         "clast: %.0f runs of this store are at points that only studies and searches have: `where not study` leaves "

@@ -50,7 +50,8 @@ static status choose_campaigns(struct store *store, const char *campaign, struct
 static status choose_campaigns_alone(struct store *store, struct error *error) {
   TRY(sql_execute(store->db,
                   "DELETE FROM temp.chosen_point AS p WHERE point_id NOT IN (SELECT point_id FROM campaign_point) "
-                  "AND " POINT_IS_OF_STUDY "; DELETE FROM temp.chosen_point AS p WHERE " POINT_IS_OF_STUDY,
+                  "AND " POINT_IS_OF_STUDY("main.") "; DELETE FROM temp.chosen_point AS p WHERE " POINT_IS_OF_STUDY(
+                      "main."),
                   doing, error)); /* those that a study had planned and did not begin are not told */
   store->left_out = sqlite3_changes64(store->db);
   return STATUS_OK;

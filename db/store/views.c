@@ -223,6 +223,7 @@ void views_statistics_resolution(size_t count, const char *const *names, FILE *o
  * valid. */
 struct view {
   sqlite3 *db;
+  bool stored; /* in the file, not of the connection */
   FILE *out;
   status result;
   struct error *error;
@@ -245,7 +246,7 @@ static void write_rows_of(struct view *view, char *sql) {
 
 /* What all views of points begin with: is the point one of a study, and the varied inputs. */
 static void write_axes(struct view *view) {
-  fputs("  (" POINT_IS_OF_STUDY ") AS study,\n", view->out);
+  fprintf(view->out, "  (%s) AS study,\n", view->stored ? POINT_IS_OF_STUDY("") : POINT_IS_OF_STUDY("main."));
   write_rows(view,
              "SELECT format('  (SELECT value FROM point_input i WHERE i.point_id = p.point_id AND i.path = %Q) AS "
              "\"%w\",' || char(10), path, column_name) FROM axis ORDER BY path");
@@ -437,42 +438,31 @@ status views_document(sqlite3 *db, struct error *error) {
   return sql_execute(db, views_columns_sql, "documenting the views", error);
 }
 
-/* Drops and creates the views in the schema `place`: main or temp. */
-static status make(sqlite3 *db, const char *place, char *const text[VIEWS_COUNT], struct error *error) {
-  for (size_t i = 0; i < VIEWS_COUNT; i++)
+/* Drops and creates the views of the connection, or those of the file. */
+static status make(sqlite3 *db, bool stored, struct error *error) {
+  static void (*const writers[VIEWS_COUNT])(struct view *) = {write_runs, write_points, write_spectra, write_estimates,
+                                                              write_resolution};
+  const char *place = stored ? "main" : "temp";
+  for (size_t i = 0; i < VIEWS_COUNT; i++) {
+    OWNED char *text = NULL; /* after its CREATE VIEW and schema: "runs AS SELECT ...;" */
+    struct view view = {.db = db, .stored = stored, .out = text_open(&text), .error = error};
+    writers[i](&view);
+    text_close_small(view.out, &text);
+    TRY(view.result);
     TRY(sql_executef(db, doing, error, "DROP VIEW IF EXISTS %s.%s; CREATE VIEW %s.%s", place, views_names[i], place,
-                     text[i]));
+                     text));
+  }
   return STATUS_OK;
 }
 
-/* Makes the views of the connection and, with `stored`, those of the file. */
-static status make_all(sqlite3 *db, bool stored, struct error *error) {
-  static void (*const writers[VIEWS_COUNT])(struct view *) = {write_runs, write_points, write_spectra, write_estimates,
-                                                              write_resolution};
-  char *text[VIEWS_COUNT] = {NULL}; /* after their CREATE VIEW and schema: "runs AS SELECT ...;" */
-  status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
-    struct view view = {.db = db, .out = text_open(&text[i]), .error = error};
-    writers[i](&view);
-    text_close_small(view.out, &text[i]);
-    result = view.result;
-  }
-  if (result == STATUS_OK)
-    result = make(db, "temp", text, error);
-  if (result == STATUS_OK && stored)
-    result = make(db, "main", text, error);
-  for (size_t i = 0; i < VIEWS_COUNT; i++)
-    free(text[i]);
-  return result;
-}
-
 status views_make_temporary(sqlite3 *db, struct error *error) {
-  return make_all(db, false, error);
+  return make(db, false, error);
 }
 
 status views_regenerate(sqlite3 *db, struct error *error) {
-  const status result = make_all(db, true, error);
-  return result == STATUS_OK ? views_document(db, error) : result;
+  TRY(make(db, false, error));
+  TRY(make(db, true, error));
+  return views_document(db, error);
 }
 
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error) {

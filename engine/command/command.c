@@ -244,8 +244,6 @@ static status finish(void *pointer, struct outcome *outcome, void *result, struc
   }
   const struct outcome_small small = {settings->fragments.dust_mass, complete_mass(settings, *count, *fragments)};
   outcome_fragments(outcome, *count, *fragments, &small);
-  if (!outcome_is_usable(run->state))
-    outcome_withdraw(outcome);
   outcome->state = run->state;
   memcpy(outcome->message, run->message, sizeof outcome->message);
   outcome->steps = 1;

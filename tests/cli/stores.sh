@@ -61,6 +61,9 @@ expect 0 "$clast" export charged.db --per run
 same "$(sed 1d out | wc -l)" 4 "rows of runs"
 expect 0 "$clast" export charged.db --per run --studies
 [ "$(sed 1d out | wc -l)" -gt 4 ] || fail "the study's runs are left out"
+# The points of a study are its points, too, where it is chosen alone.
+expect 0 "$clast" export charged.db --per run --campaign 'charged grains' --where study
+[ "$(sed 1d out | wc -l)" -gt 1 ] || fail "a chosen study has no points"
 expect 64 "$clast" export charged.db whole.db --campaign 1
 expect 0 "$clast" run charged.yaml
 same "$(head -1 out | tr -s ' ')" "$(head -1 charged-estimates | tr -s ' ')" "columns of run"
@@ -304,4 +307,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 109
+done_after 110
