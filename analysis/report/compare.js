@@ -46,6 +46,6 @@ export function showCompare() {
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputs([cell, ...rest]), shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, `These stores have no point in common.${none.join('')}`),
     ...[...new Set(state.stores.map((one, i) => doubtSentence(one, rows.map((row) => row[i]).filter(Boolean))))].map((text) => element('p', {}, text)),
-    rows.length ? element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:') : null,
+    rows.length ? element('p', {}, 'Where at least half of the runs have one seed on both sides, the difference is of these pairs. The same from a shell:') : null,
     ...(state.quantity === 'beta' ? [] : others.filter((other) => !other.facts.no_pair).map((other) => element('p', {}, command(`clast compare ${operandOf(first)} ${operandOf(other)}${onlyOf(chosen)} --quantity ${state.quantity}`)))));
 }

@@ -35,6 +35,12 @@ int64_t accuracy_seeds(double mean, double deviation, double margin, bool share)
   return seeds > FEWEST_SEEDS ? seeds : FEWEST_SEEDS;
 }
 
+enum { OWN_KNOBS = 32 };
+struct own_knob { /* at the scene's own settings */
+  char name[64];
+  double resolution, middle;
+};
+
 struct finding {
   const struct campaign *campaign;
   struct accuracy *accuracy;
@@ -54,6 +60,9 @@ struct finding {
   int unstudied;   /* knobs of resolution with levels, but without the scene's own one */
   double own_mean; /* with the scene's own settings: of the knob with most seeds there */
   int64_t own_n;
+  struct own_knob own_knob[OWN_KNOBS];
+  size_t own_knobs;
+  double own_error, own_resolution, own_middle; /* of all; the error may hold other studies, too */
 };
 
 /* How far a result with this mean can move. */
@@ -122,11 +131,42 @@ static void note_level(struct finding *finding, const struct knob *knob, const s
     text_append(unusual, sizeof accuracy->unusual, "%s%s", *unusual ? "," : "", row->knob);
 }
 
+/* The middle of the interval of what a knob leaves at a level. */
+static double middle_of(const struct convergence_row *row) {
+  return fmin(fabs(isnan(row->distance) ? row->bias : row->distance), row->resolution);
+}
+
+/* What the scene's own settings leave of each knob and of all, some of which other studies may have. */
+static void note_own(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
+  if (!row->base || !knob || knob->group == KNOB_SETTINGS || !(row->resolution >= 0) || finding->own_knobs == OWN_KNOBS)
+    return;
+  struct own_knob *own = &finding->own_knob[finding->own_knobs++];
+  *own = (struct own_knob){.resolution = row->resolution, .middle = middle_of(row)};
+  snprintf(own->name, sizeof own->name, "%.63s", row->knob);
+  finding->own_error = row->error;
+  finding->own_resolution += row->resolution;
+  finding->own_middle += own->middle;
+}
+
+/* A level's error: that of the store, or its own knob's and what the scene's own settings leave of all others. *middle:
+ * what more seeds of this study leave of it. */
+static double error_of_level(const struct finding *finding, const struct convergence_row *row, double *middle) {
+  struct own_knob own = {.resolution = NAN};
+  for (size_t k = 0; k < finding->own_knobs; k++)
+    if (strcmp(finding->own_knob[k].name, row->knob) == 0)
+      own = finding->own_knob[k];
+  *middle = (row->resolution > 0 ? middle_of(row) : 0) + finding->own_middle - (own.middle > 0 ? own.middle : 0) +
+            fmax(finding->own_error - finding->own_resolution, 0);
+  const double all = row->resolution + finding->own_error - own.resolution; /* NaN: one is not known */
+  return all > row->error * (1 + 1e-9) ? all : row->error;
+}
+
 /* First pass: finds the knobs without a limit at the scene's own setting. */
 static status take_open(struct finding *finding, const struct convergence_row *row, struct error *error) {
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
+  note_own(finding, knob, row);
   if (row->base && row->n > finding->own_n) {
     finding->own_mean = row->mean;
     finding->own_n = row->n;
@@ -206,8 +246,10 @@ static status add_option(struct finding *finding, const struct convergence_row *
   option->within = finding->campaign->accuracy_within * (finding->campaign->accuracy_of_value ? fabs(option->mean) : 1);
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
     option->beyond = isnan(finding->beyond) ? (double)NAN : fmin(finding->beyond, option->most - option->error);
-  const double middle = fabs(isnan(row->distance) ? row->bias : row->distance);
-  option->middle = row->resolution > 0 && middle < row->resolution ? middle / row->resolution : 1;
+  double middle;
+  (void)error_of_level(finding, row, &middle);
+  const double whole = option->extrapolated ? row->error : option->error; /* row: the finest with runs */
+  option->middle = whole > 0 && middle < whole ? middle / whole : 1;
   option->deviation = row->deviation;
   option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(option->mean, row->deviation,
                                                             option->within - resolution_of(option), option->share)
@@ -335,10 +377,12 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (there || (marked && !row->base))
     return STATUS_OK;
 
+  double middle;
+  const double most = most_of(finding->row && field_is_share(finding->row), row->n ? row->mean : finding->finest.mean);
   struct accuracy_option option = {.own = row->base,
                                    .extrapolated = extrapolated,
                                    .open = row->at_least,
-                                   .error = row->error,
+                                   .error = fmax(row->error, fmin(error_of_level(finding, row, &middle), most)),
                                    .run_s = row->cpu};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
   if (!extrapolated)
@@ -412,6 +456,8 @@ static status read_study(struct finding *finding, struct store *store, const str
   finding->scene = scene;
   finding->beyond = 0;
   finding->unstudied = 0;
+  finding->own_knobs = 0;
+  finding->own_error = finding->own_resolution = finding->own_middle = 0;
   TRY(ask_doubts_results(store, quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
   finding->row = quantity.row;
@@ -652,9 +698,10 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
     if (middle < best->within && error > 0)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
     else
-      text_append(next, size,
-                  "More seeds are not likely to help: they narrow the interval of this error, whose middle is %.2g%s",
-                  middle, width_unit(campaign, text));
+      text_append(
+          next, size,
+          "More seeds are not likely to help: they narrow the interval of this error, and leave about %.2g%s of it",
+          middle, width_unit(campaign, text));
     text_append(next, size, ". No setting that was studied is enough");
     if (middle >= best->within && accuracy->widest) {
       text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it", accuracy->widest->name);
@@ -684,7 +731,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
   if (error > 0)
     text_append(next, size,
                 "More seeds narrow the interval of this error. The study has %" PRId64
-                "; if its middle stays at %.2g, about %.0f at every level are needed, which take",
+                "; if they leave %.2g of it, about %.0f at every level are needed, which take",
                 best->n, middle, seeds);
   else
     text_append(next, size, "More seeds may show a difference; %.0f at every level take", seeds);

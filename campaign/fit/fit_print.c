@@ -243,8 +243,9 @@ static const char *list_ends(const struct fit *fit, size_t direction, char text[
 static const double AS_WIDE = 0.9;
 
 /* Inputs whose posterior is narrow across a line, though wide along it: the two with the largest correlation, and the
- * line's ends at the 5 and 95 % quantiles of the first. `of`: only pairs with this input; fit->inputs: all. */
-static bool tell_line(const struct fit *fit, size_t of, FILE *out) {
+ * line's ends at the 5 and 95 % quantiles of the first. `of`: only pairs with this input; fit->inputs: all. wide: as
+ * the prior, or nearly. */
+static bool tell_line(const struct fit *fit, size_t of, bool wide, FILE *out) {
   static const double LEAST = 0.8; /* correlation; our choice: the posterior then is a third as wide as long, or less */
   const size_t p = fit->inputs;
   double mean[INFERENCE_INPUTS], covariance[INFERENCE_INPUTS * INFERENCE_INPUTS], most = 0;
@@ -273,9 +274,11 @@ static bool tell_line(const struct fit *fit, size_t of, FILE *out) {
   }
   words_print(
       out, "",
-      "RIDGE: %s and %s change together (correlation of the posterior %.2f): %s gives about the same as %s. The "
-      "priors set the ends of this line. State the two together, or measure something that changes along it.",
-      row_of(fit, a)->path, row_of(fit, b)->path, most, ends[0], ends[1]);
+      "RIDGE: %s and %s change together (correlation of the posterior %.2f): %s gives about the same as %s. %s. "
+      "State the two together, or measure something that changes along it.",
+      row_of(fit, a)->path, row_of(fit, b)->path, most, ends[0], ends[1],
+      wide ? "The priors set the ends of this line"
+           : "The data seem to end this line, and where hangs on the points: more of them may lengthen it");
   return true;
 }
 
@@ -295,7 +298,7 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
   size_t input = 0;
   while (input + 1 < fit->inputs && !identify_mixed(&fit->found, direction, input))
     input++;
-  if (tell_line(fit, input, out)) /* a steep line is nearly this input alone */
+  if (tell_line(fit, input, true, out)) /* a steep line is nearly this input alone */
     return;
   if (fit->found.kept[input] >= AS_WIDE) /* whatever they tell near one place */
     words_print(out, "", "NOT DETERMINED: %s. Its interval is that of its prior.", names);
@@ -339,7 +342,7 @@ static void tell_determined(const struct fit *fit, FILE *out) {
   }
   words_print(out, "", "%s: median and 90 %% interval.", found);
   const bool wide = as_wide || fit->found.widest > M_SQRT1_2;
-  if (known == p && wide && tell_line(fit, p, out))
+  if (known == p && tell_line(fit, p, wide, out))
     return;
   if (known == p && wide)
     words_print(out, "", "The data tell more than the priors at most places, and yet they leave %s.",

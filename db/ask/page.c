@@ -598,9 +598,9 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
                   doing, error));
   for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
     TRY(copy(page, answer_to(store, error, "%s", tables[i].sql), tables[i].name, EXACT));
-  /* exact inputs, which come first in the view, and rounded statistics */
+  /* exact inputs, which come first in the view behind point_id, engine, scene, study; rounded statistics */
   TRY(answer_number(store, &axes, error, "SELECT count(*) FROM main.axis"));
-  TRY(copy(page, answer_to(store, error, "SELECT * FROM points"), "points", 3 + (size_t)axes));
+  TRY(copy(page, answer_to(store, error, "SELECT * FROM points"), "points", 4 + (size_t)axes));
   TRY(copy_spectra(page, store, error));
   TRY(copy(
       page,

@@ -333,28 +333,45 @@ static bool is_common(const struct ask_pairs *pairs, const char *path, size_t pa
   return false;
 }
 
-/* Writes the paths of the inputs of which the sides have no common value, of many the first NAMED; "": each has one. */
+static bool varies(const struct side *side, const char *path, size_t path_length) {
+  size_t length = 0;
+  for (const char *input = NULL; (input = next_input(side->groups[0].list, input, &length));)
+    if (strncmp(input, path, path_length) == 0 && input[path_length] == ' ')
+      return true;
+  return false;
+}
+
+/* Writes the paths of the inputs that one side alone varies, or of which the sides have no common value, of many the
+ * first NAMED; "": each has one. */
 static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) {
-  const struct side *b = &pairs->side[1];
   size_t length = 0, count = 0;
   *text = '\0';
-  for (const char *input = NULL; (input = next_input(b->groups[0].list, input, &length));) {
-    const size_t path = strcspn(input, " ");
-    if (!is_common(pairs, input, path) && count++ < NAMED)
-      text_append(text, size, "%s%.*s", *text ? ", " : "", (int)path, input);
-  }
+  for (int k = 1; k >= 0; k--)
+    for (const char *input = NULL; (input = next_input(pairs->side[k].groups[0].list, input, &length));) {
+      const size_t path = strcspn(input, " ");
+      const bool both = varies(&pairs->side[!k], input, path);
+      if ((both && (k == 0 || is_common(pairs, input, path))) || count++ >= NAMED)
+        continue;
+      text_append(text, size, "%s", *text ? ", " : ": ");
+      text_append(text, size, "%s %.*s",
+                  both ? "no common value of"
+                  : k  ? "only B varies"
+                       : "only A varies",
+                  (int)path, input);
+    }
   if (count > NAMED)
     text_append(text, size, " and %zu more inputs", count - NAMED);
 }
 
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];
-  char apart[NAMED * FIELD_TEXT_SIZE];
+  char apart[NAMED * (FIELD_TEXT_SIZE + 24)];
   if (pairs->found > 0)
     return STATUS_OK;
   write_apart(pairs, apart, sizeof apart);
-  return status_fail(error, STATUS_USAGE,
-                     "no two points have the same varied inputs%s%s. Name two points: `clast compare %s:%lld %s:%lld`",
-                     *apart ? ": no common value of " : "", apart, a->path, (long long)a->groups[0].point, b->path,
-                     (long long)b->groups[0].point);
+  return status_fail(
+      error, STATUS_USAGE,
+      "no two points have the same varied inputs%s. Name campaigns that vary the same (STORE:CAMPAIGN), or two "
+      "points: `clast compare %s:%lld %s:%lld`",
+      apart, a->path, (long long)a->groups[0].point, b->path, (long long)b->groups[0].point);
 }

@@ -292,7 +292,7 @@ import re, sqlite3
 db = sqlite3.connect("mean.db")
 mean, = db.execute("select mean from convergence where base and n = 8").fetchone()
 assert float(re.search(r"the scene's own +([0-9.e-]+) ", open("out").read())[1]) == float("%.3g" % mean), mean
-best = re.search(r"whose mean is ([0-9.e-]+) \(([0-9]+) seeds", " ".join(open("err").read().split()))
+best = re.search(r"mean is ([0-9.e-]+) \(([0-9]+) seeds", " ".join(open("err").read().split()))
 assert any(best[1] == "%.4g" % m for m, in db.execute("select mean from convergence where n = " + best[2])), best
 PY
 ok "the mean of most seeds"
@@ -456,7 +456,7 @@ says "(resolution: grains)"
 # More seeds: no number when the middle of the interval is out of reach. A smaller study does not replace a larger one.
 sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
-says "More seeds are not likely to help: they narrow the interval of this error, whose middle is 0.0"
+says "More seeds are not likely to help: they narrow the interval of this error, and leave about 0.0"
 says "Finer levels of grains, which leaves most of it, may narrow it"
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 says "best: no level is both cheaper and nearer" # the legend tells the columns that are shown
