@@ -146,7 +146,9 @@ class Store:
     def estimates(self, point=None, studies=False):
         """A row for each exponent of a point, over all of its runs."""
         where = "SELECT * FROM estimates WHERE run_id IS NULL"
-        return self.query(f"{where} AND {self._without(studies)}") if point is None else self.query(where + " AND point_id = ?", (int(point),))
+        if point is None:
+            return self.query(f"{where} AND {self._without(studies)}")
+        return self.query(where + " AND point_id = ?", (int(point),))
 
     def unit(self, column):
         """The SI unit of a column of the views; "" for a pure number or a text. KeyError: there is no such column."""

@@ -148,17 +148,23 @@ static void note_own(struct finding *finding, const struct knob *knob, const str
   finding->own_middle += own->middle;
 }
 
-/* A level's error: that of the store, or its own knob's and what the scene's own settings leave of all others. *middle:
- * what more seeds of this study leave of it. */
-static double error_of_level(const struct finding *finding, const struct convergence_row *row, double *middle) {
-  struct own_knob own = {.resolution = NAN};
+static struct own_knob own_of(const struct finding *finding, const char *knob) {
   for (size_t k = 0; k < finding->own_knobs; k++)
-    if (strcmp(finding->own_knob[k].name, row->knob) == 0)
-      own = finding->own_knob[k];
-  *middle = (row->resolution > 0 ? middle_of(row) : 0) + finding->own_middle - (own.middle > 0 ? own.middle : 0) +
-            fmax(finding->own_error - finding->own_resolution, 0);
-  const double all = row->resolution + finding->own_error - own.resolution; /* NaN: one is not known */
-  return all > row->error * (1 + 1e-9) ? all : row->error;
+    if (strcmp(finding->own_knob[k].name, knob) == 0)
+      return finding->own_knob[k];
+  return (struct own_knob){.resolution = NAN};
+}
+
+/* A level's error: that of the store, or its own knob's and what the scene's own settings leave of all others. */
+static double error_of_level(const struct finding *finding, const struct convergence_row *row) {
+  const double all = row->resolution + finding->own_error - own_of(finding, row->knob).resolution; /* NaN: not known */
+  return all > row->error * (1 + 1e-9) ? all : row->error; /* the same sum in another order is no larger error */
+}
+
+/* What more seeds of this study leave of a level's error: the middles of its knobs, and all of other studies. */
+static double left_of_level(const struct finding *finding, const struct convergence_row *row) {
+  return (row->resolution > 0 ? middle_of(row) : 0) + finding->own_middle - own_of(finding, row->knob).middle +
+         fmax(finding->own_error - finding->own_resolution, 0);
 }
 
 /* First pass: finds the knobs without a limit at the scene's own setting. */
@@ -246,10 +252,9 @@ static status add_option(struct finding *finding, const struct convergence_row *
   option->within = finding->campaign->accuracy_within * (finding->campaign->accuracy_of_value ? fabs(option->mean) : 1);
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
     option->beyond = isnan(finding->beyond) ? (double)NAN : fmin(finding->beyond, option->most - option->error);
-  double middle;
-  (void)error_of_level(finding, row, &middle);
   const double whole = option->extrapolated ? row->error : option->error; /* row: the finest with runs */
-  option->middle = whole > 0 && middle < whole ? middle / whole : 1;
+  const double left = left_of_level(finding, row);
+  option->middle = whole > 0 && left < whole ? left / whole : 1;
   option->deviation = row->deviation;
   option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(option->mean, row->deviation,
                                                             option->within - resolution_of(option), option->share)
@@ -377,12 +382,11 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (there || (marked && !row->base))
     return STATUS_OK;
 
-  double middle;
   const double most = most_of(finding->row && field_is_share(finding->row), row->n ? row->mean : finding->finest.mean);
   struct accuracy_option option = {.own = row->base,
                                    .extrapolated = extrapolated,
                                    .open = row->at_least,
-                                   .error = fmax(row->error, fmin(error_of_level(finding, row, &middle), most)),
+                                   .error = fmax(row->error, fmin(error_of_level(finding, row), most)),
                                    .run_s = row->cpu};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
   if (!extrapolated)
@@ -687,7 +691,7 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
 }
 
 /* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
- * leave its middle. */
+ * leave its middle, and the errors of other studies. */
 static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
                          const struct accuracy_option *best, char *next, size_t size) {
   const double error = resolution_of(best), middle = best->middle * error;

@@ -17,14 +17,15 @@ struct accuracy_option {
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
   bool open;         /* the error is no bound */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
-  double middle; /* share of the error that more seeds leave: the middle of the knob's interval over its farther end */
-  double beyond; /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
-                    the option is chosen for a time only, if no other can be run. Else 0 */
-  double mean;   /* of an extrapolated one that of the finest level with runs */
-  int64_t n;     /* seeds of this mean */
-  double within; /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
-  double most;   /* no error of a share is larger than its distance from the farther end; else infinite */
-  bool share;    /* of a share, whose intervals in tables are wider than Student's */
+  double
+      middle; /* share of the error that more seeds leave: middles of the knobs' intervals, and all of other studies */
+  double beyond;    /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
+                       the option is chosen for a time only, if no other can be run. Else 0 */
+  double mean;      /* of an extrapolated one that of the finest level with runs */
+  int64_t n;        /* seeds of this mean */
+  double within;    /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
+  double most;      /* no error of a share is larger than its distance from the farther end; else infinite */
+  bool share;       /* of a share, whose intervals in tables are wider than Student's */
   double deviation; /* standard deviation between seeds */
   int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
   double total;     /* error, beyond if known, and half width of the 95 % interval of the mean of so many seeds; NaN

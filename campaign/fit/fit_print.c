@@ -278,7 +278,7 @@ static bool tell_line(const struct fit *fit, size_t of, bool wide, FILE *out) {
       "State the two together, or measure something that changes along it.",
       row_of(fit, a)->path, row_of(fit, b)->path, most, ends[0], ends[1],
       wide ? "The priors set the ends of this line"
-           : "The data seem to end this line, and where hangs on the points: more of them may lengthen it");
+           : "Where it ends may depend on the points of the fit: more points may lengthen it");
   return true;
 }
 

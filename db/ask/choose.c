@@ -88,9 +88,9 @@ static status make_views(sqlite3 *db, bool summed, struct error *error) {
   return STATUS_OK;
 }
 
-/* The inputs that tables show and charts choose from. `choice` has its views already. Derived: a default that follows
- * from what campaigns vary, as it differs within one that does not vary it, and from edited: inputs that nobody varies
- * and that became axes because a campaign's files were changed. */
+/* The inputs that tables show and charts choose from. `choice` has its views already. edited: inputs that no campaign
+ * varies; they are axes because a file of a campaign was changed. derived: an input that a campaign does not vary, and
+ * that differs within it: a default that follows from the varied and the edited inputs. */
 static status choose_axes(sqlite3 *db, const struct ask_choice *choice, struct error *error) {
   return sql_executef(
       db, doing, error,

@@ -237,6 +237,14 @@ sed -i 's/u = .*/u = 0.25 * (b - 6 * (a - 0.42))/' law.sh
 expect 0 "$clast" fit waves.yaml line.yaml --rounds 3 -j 2 --allow-commands --quiet --store steep.db
 prints "RIDGE: a and b change together (correlation of the posterior 0.9"
 ! grep -q 'NOT DETERMINED' out || fail "an input of a line counts as one alone"
+# A line whose ends the data tell, too, is still a line: a + b is known within 0.01, a - b within 0.25.
+sed -i 's/u = .*/u = 0/; s/y = .*/y = (s > 1 ? a - b : a + b) + substr(n, length(n) - 2) \/ 1e5/' law.sh
+sed 's/{s: 1}, measured: .*/{s: 1}, measured: [{quantity: y, value: 1, error: 0.01, resolution: 0}]}/
+  s/{s: 2}, measured: .*/{s: 2}, measured: [{quantity: y, value: 0, error: 0.25, resolution: 0}]}/' waves.yaml >ends.yml
+expect 0 "$clast" fit ends.yml line.yaml --rounds 3 -j 2 --allow-commands --quiet --store known.db
+prints "RIDGE: a and b change together (correlation of the posterior -"
+grep -q 'may depend on the points' <(tr '\n' ' ' <out) || fail "the priors are told to end a line that the data end"
+! grep -q 'determine all inputs' out || fail "inputs of a line are told to be determined"
 
 # A seed moves y alike at all points (standard deviation 0.058). Seeds 4 and 5 for all points are one pair of specimens,
 # 0.008 apart. With seeds of its own for each point the scatter is known, and the interval holds the 0.5 behind the specimen
@@ -266,4 +274,4 @@ assert a['q05'] < 0.5 < a['q95'], a
 assert 0.045 < y['sd_seeds'] < 0.072, y  # 60 pairs tell it within 9 %
 PY
 ok "the scatter of seeds that act alike"
-done_after 41
+done_after 42
