@@ -71,6 +71,11 @@ status quantity_tell_idle(struct store *store, struct error *error);
 void quantity_tell_resolution(struct store *store, const char *name, const struct ask_group_pooled *pooled);
 /* Prints a line for each of several comma-separated names; "main": the default quantity. */
 void quantity_tell_resolutions(struct store *store, const char *names, const struct ask_group_pooled *pooled);
+/* Prints a sentence on stderr: how many of the chosen points have an error of at most `within`, in the quantity's SI
+ * unit or (of_value) as a share of the mean, and the largest error. The error of a point is the half width of the
+ * interval over its seeds plus what finer settings may change. Points of fewer than two runs do not count. */
+status quantity_tell_accuracy(struct store *store, const char *name, const char *unit, double within, bool of_value,
+                              struct error *error);
 
 /* Draws the quantity over `x`, a line for each value of `by` (may be NULL). STATUS_USAGE: x is not a number, too many
  * lines or points, unknown names. */

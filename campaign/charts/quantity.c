@@ -22,6 +22,7 @@
 enum {
   VERSION = 1,
   POINTS = 2,
+  RUNS = 3,
   MEAN = 7,
   HALF_WIDTH = 10,
   LOW = 11,
@@ -349,6 +350,69 @@ void quantity_tell_resolutions(struct store *store, const char *names, const str
       *dot = '_';
     quantity_tell_resolution(store, name, pooled);
   }
+}
+
+/* "0.02 m/s", "5 %": an error, or its share of a mean. */
+static void show_error(double error, bool of_value, const char *unit, char *text, size_t size) {
+  const double number = of_value ? 100 * error : error;
+  snprintf(text, size, of_value && number >= 99.5 ? "%.0f%s%s" : "%.3g%s%s", number, *unit && !of_value ? " " : "",
+           of_value ? " %" : unit);
+}
+
+status quantity_tell_accuracy(struct store *store, const char *name, const char *unit, double within, bool of_value,
+                              struct error *error) {
+  struct ask_column axes[LIMITS_AXES_OF_POOL];
+  struct ask_group_pooled pooled;
+  char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", allowed[64], widest[64], where[400] = "";
+  size_t count;
+  int64_t points = 0, kept = 0, not_studied = 0;
+  double largest = -1;
+  TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
+  for (size_t i = 0; i < count; i++)
+    text_append(by, sizeof by, "%s%s", i ? "," : "", axes[i].name);
+  ANSWER groups = ask_group(store, by, name, &pooled, error);
+  while (answer_next(&groups)) {
+    const double mean = answer_real(&groups, count + MEAN), resolution = answer_real(&groups, count + RESOLUTION);
+    const double spread = fmax(answer_real(&groups, count + HALF_WIDTH),
+                               fmax(answer_real(&groups, count + HIGH) - mean,
+                                    mean - answer_real(&groups, count + LOW)));
+    if (isnan(mean) || answer_integer(&groups, count + RUNS) < 2)
+      continue;
+    const double total = (isnan(spread) ? 0 : spread) + (isnan(resolution) ? 0 : resolution); /* NaN: equal runs */
+    const double compared = of_value ? total / fabs(mean) : total;
+    points++;
+    not_studied += isnan(resolution);
+    kept += compared <= within;
+    if (!(compared > largest))
+      continue;
+    largest = compared;
+    *where = '\0';
+    for (size_t i = 0; i < count; i++) {
+      const struct query_value raw = answer_value(&groups, i), value = ask_columns_value(&axes[i], &raw);
+      if (value.kind == QUERY_TEXT)
+        text_append(where, sizeof where, "%s%s %s", *where ? ", " : "", axes[i].word, value.text);
+      else if (value.kind != QUERY_NULL)
+        text_append(where, sizeof where, "%s%s %.4g%s%s", *where ? ", " : "", axes[i].word, value.real,
+                    strcmp(axes[i].unit, "1") != 0 && *axes[i].unit ? " " : "",
+                    strcmp(axes[i].unit, "1") != 0 ? axes[i].unit : "");
+    }
+  }
+  TRY(answer_end(&groups));
+  if (points == 0)
+    return STATUS_OK;
+  show_error(within, of_value, unit, allowed, sizeof allowed);
+  show_error(largest, of_value, unit, widest, sizeof widest);
+  words_print(stderr, "",
+              "clast: accuracy: %" PRId64 " of %" PRId64
+              " point%s within %s%s by %s; the largest error is %s%s%s%s%s%s",
+              kept, points, points == 1 ? " is" : "s are", allowed, of_value ? " of the mean" : "",
+              not_studied == points ? "the interval over seeds alone (no point was studied)"
+                                    : "interval over seeds and error of the resolution together",
+              widest, *where ? " (" : "", where, *where ? ")" : "",
+              not_studied && not_studied < points ? "; points whose resolution was not studied count with seeds alone"
+                                                  : "",
+              kept < points ? ". A smaller accuracy.within takes more seeds or finer settings" : "");
+  return STATUS_OK;
 }
 
 /* How the values of a chart were made: "mean over seeds and ...". */

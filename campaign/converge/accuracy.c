@@ -925,8 +925,9 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     text_append(cost, sizeof cost, timed ? " (%s allowed)" : " (%s of processor time allowed)", allowed);
   const char *const or_more[] = {"", " or more"}, *more = or_more[isnan(option->beyond)];
   if (campaign->accuracy_of_value)
-    snprintf(share, sizeof share, " (%.2g %% of its mean %.3g%s)", 100 * option->total / fabs(option->mean),
-             option->mean, unit);
+    snprintf(share, sizeof share,
+             option->total < fabs(option->mean) ? " (%.2g %% of its mean %.3g%s)" : " (%.0f %% of its mean %.3g%s)",
+             100 * option->total / fabs(option->mean), option->mean, unit);
   words_print(out, before,
               "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
               campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more, chosen,

@@ -207,7 +207,17 @@ PY
 ok "the plan takes the cheapest alternative"
 expect 0 "$clast" plan sharp.yaml
 prints "chosen"; prints "seeds a point"; prints "in doubt (!)"; prints "runs of the study: cut" # as at its own settings
-expect 0 "$clast" run sharp.yaml -j 2 --quiet --csv
+expect 0 "$clast" run sharp.yaml -j 2 --csv
+# The end of the run says whether the runs keep what the study promised.
+expect 0 "$clast" stats sharp.db --campaign sharp -Q largest_fraction --csv
+total=$(python -c 'import csv; r, = csv.DictReader(open("out")); q = "largest_fraction_"
+print("%.3g" % (float(r[q + "hw95"]) + float(r[q + "resolution"])))')
+expect 0 "$clast" run sharp.yaml
+says "accuracy: 1 of 1 point is within 0.05 by interval over seeds and error of the resolution together; the largest error is $total"
+cp sharp.db missed.db
+sqlite3 missed.db "update run set largest_fraction = seed % 2"
+expect 0 "$clast" run sharp.yaml --store missed.db
+says "accuracy: 0 of 1 point is within 0.05 by"
 same "$(number sharp.db "select value from campaign join campaign_point using (campaign_id) join point_input using (point_id) \
   where name = 'sharp' and path = 'fidelity.time_step'")" "$(cat setting)" "time step of the campaign's point"
 sed 's/{within: 0.05}/{quantity: beta_masses_from_2, within: 9}/' sharp.yaml >beta.yaml
@@ -566,4 +576,4 @@ expect 65 "$clast" converge bad.yaml --list
 says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 143
+done_after 146
