@@ -61,11 +61,37 @@ static bool is_of_sql(int code) {
 
 static const char between_statements[] = " \t\n\v\f\r;";
 
+/* SQLite says that there is no column X: names the columns of the view runs that end in it ("strain" or
+ * "threshold.strain" for threshold_strain), as tables and --by call them. */
+static void suggest_columns(sqlite3 *db, const char *message, char *names, size_t size) {
+  static const char no_column[] = "no such column: ";
+  char typed[128], found[400] = "";
+  STATEMENT columns = NULL;
+  struct error ignored;
+  if (strncmp(message, no_column, strlen(no_column)) != 0)
+    return;
+  snprintf(typed, sizeof typed, "_%.120s", message + strlen(no_column));
+  for (char *dot = typed; (dot = strchr(dot, '.'));)
+    *dot = '_';
+  if (sql_prepare(db, "SELECT name FROM pragma_table_info('runs') WHERE substr('_' || name, -length(?1)) = ?1 LIMIT 4",
+                  &columns, "looking for a column", &ignored))
+    return;
+  sqlite3_bind_text(columns, 1, typed, -1, SQLITE_STATIC);
+  while (sqlite3_step(columns) == SQLITE_ROW)
+    text_append(found, sizeof found, "%s%s", *found ? ", " : "", (const char *)sqlite3_column_text(columns, 0));
+  if (*found)
+    snprintf(names, size, ". The column is called %s", found);
+}
+
 static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
   const int offset = sqlite3_error_offset(db);
-  if (offset >= 0 && (size_t)offset < strlen(sql))
-    return status_fail(error, STATUS_USAGE, "SQL error: %s, at: %.200s", sqlite3_errmsg(db), sql + offset);
-  return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
+  char message[400], place[240] = "", names[440] = "";
+  snprintf(message, sizeof message, "%s", sqlite3_errmsg(db));
+  const size_t line = offset >= 0 && (size_t)offset < strlen(sql) ? strcspn(sql + offset, "\n") : 0;
+  if (line > 0)
+    snprintf(place, sizeof place, ", at: %.*s", line < 200 ? (int)line : 200, sql + offset);
+  suggest_columns(db, message, names, sizeof names);
+  return status_fail(error, STATUS_USAGE, "SQL error: %s%s%s", message, place, names);
 }
 
 /* Prepares one statement that only reads. SQLite compiles it again when the tables change meanwhile; what it then names

@@ -148,6 +148,10 @@ expect 64 "$clast" map one.db no.svg -x strain -y angle --campaign two
 says "the store has no campaign 'two'"
 expect 64 "$clast" stats one.db --where "no_such > 1"
 says "no such column: no_such"
+expect 64 "$clast" stats one.db --where "strain > 0.02"
+says "no such column: strain, at: strain > 0.02. The column is called threshold_strain"
+expect 64 "$clast" query one.db "select threshold.strain from runs"
+says "The column is called threshold_strain"
 expect 64 "$clast" stats one.db --where "1) ; DELETE FROM run --"
 expect 0 "$clast" plot one.db chosen.svg -x strain --where "replicate < 2" --keep-script
 grep -q "only replicate < 2" chosen.gp || fail "the caption does not tell the choice"
@@ -210,4 +214,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 101
+done_after 103
