@@ -14,8 +14,4 @@ same() { # FILE ARGUMENTS...
 same scene-dem.schema.json scene --engine dem
 same scene-sph.schema.json scene --engine sph
 same campaign.schema.json campaign
-"$build/clast" explain conditions | cmp -s - "$source/campaign/conditions.md" || {
-  echo "schema_corpus: campaign/conditions.md is not what clast explain conditions prints; the target schemas writes it"
-  exit 1
-}
 exec /usr/bin/python3 "$source/tests/unit/schema_corpus.py" "$build/tests/test_schema_corpus" "$source"
