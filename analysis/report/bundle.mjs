@@ -8,7 +8,7 @@ import {dirname, join, resolve} from 'node:path';
 import {gzipSync} from 'node:zlib';
 
 const [source, packages, page] = process.argv.slice(2).map((path) => resolve(path));
-const {build} = createRequire(join(packages, 'package.json'))('esbuild');
+const {build} = createRequire(join(packages, 'package.json'))('esbuild-wasm');
 
 async function bundle(file) {
   const result = await build({
