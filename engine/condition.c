@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/text.h"
-
 /* Length of the next word of a list, which commas and spaces part; 0: there is none. *at moves to its begin. */
 static size_t next_word(const char **at) {
   *at += strspn(*at, ", ");

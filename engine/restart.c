@@ -10,7 +10,6 @@
 #include "engine/cpu_class.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const char magic[8] = "CLASTRUN";
 /* 4: the file records the build. */

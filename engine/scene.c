@@ -10,9 +10,7 @@
 #include "engine/builtin.h"
 #include "schemas/file.h"
 #include "schemas/json_schema.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- built-in scenes ---- */
 

@@ -1,5 +1,4 @@
 /* Documents: opening, closing, walking through the tree, and changing it. */
-#include "schemas/document.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -11,7 +10,6 @@
 #include "schemas/document_tree.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* A document that holds a copy of the text; NULL without memory. */
 static struct document *create(const char *name, const char *text, size_t size) {

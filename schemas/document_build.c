@@ -7,7 +7,6 @@
 
 #include "schemas/document_tree.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- bytes that must not reach libfyaml or a terminal ---- */
 

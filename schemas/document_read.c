@@ -5,7 +5,6 @@
 
 #include "schemas/document_tree.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { LIST_SIZE = 400, PATH_SIZE = 300 };
 

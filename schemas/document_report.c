@@ -5,7 +5,6 @@
 
 #include "schemas/document_tree.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { SHOWN = 92, BEFORE = 54 }; /* shown bytes of a long line, and how many of them precede the error */
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "schemas/field.h"
-#include "schemas/text.h"
 
 enum { NUMBER = 32 }; /* bytes of a number as text; the longest has 25 */
 

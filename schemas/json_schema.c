@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* A decimal number, perhaps with a unit behind it. A schema cannot check the unit or the value in SI; the reader checks
  * them. The last part keeps `$` from matching before a line end. */

@@ -13,8 +13,6 @@
 #include <unistd.h>
 
 #include "analysis/pictures/picture_canvas.h"
-#include "schemas/file.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/text.h"
 

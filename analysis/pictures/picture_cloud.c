@@ -7,7 +7,6 @@
 
 #include "analysis/pictures/snapshot_read.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 #define COLUMN "VTKHDF/PointData/"
 

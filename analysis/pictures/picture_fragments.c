@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { LARGE = 10 }; /* cells: a smaller fragment is poorly resolved and gets a pale tint */
 

@@ -1,5 +1,4 @@
 /* Particles drawn as discs: a cut, a view from outside, or the fragments apart. */
-#include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_layout.h"
 
@@ -8,7 +7,6 @@
 #include <string.h>
 
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { RESOLVED = 10 }; /* particles: a smaller fragment is poorly resolved and gets a pale tint */
 

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
-#include "schemas/text.h"
 
 enum { LEAST_COLUMNS = 72, FRONT = 38, MOST_PLOT = 200 };
 

@@ -7,7 +7,6 @@
 
 #include "schemas/memory.h"
 #include "schemas/rows.h"
-#include "schemas/text.h"
 
 FIELD_WORDS(
     estimates_window_names,

@@ -12,7 +12,6 @@
 #include "engine/random.h"
 #include "schemas/csv.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 void measured_release(struct measured *measured) {

@@ -11,7 +11,6 @@
 #include "engine/random.h"
 #include "engine/threads.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const char for_runs[] = "the exponent of a point's runs"; /* there was no memory for it */
 

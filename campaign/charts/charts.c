@@ -6,10 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/terminal/table.h"
-#include "engine/engine.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { WIDTH = 900 };
 

@@ -9,11 +9,8 @@
 #include <unistd.h>
 
 #include "analysis/pictures/snapshot_read.h"
-#include "campaign/terminal/table.h"
-#include "schemas/document.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 enum { WIDTH = 900 };

@@ -7,16 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/charts/charts.h"
-#include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
-#include "db/ask/ask.h"
 #include "db/store/views.h"
 #include "engine/grow.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* Columns of ask_group after the axes. */
 enum {

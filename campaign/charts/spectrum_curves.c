@@ -5,9 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "campaign/terminal/table.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { COLUMNS = 100 };
 

@@ -6,8 +6,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "campaign/farm/farm.h"
-
 #define COMMAND_ADDRESS(name_) &name_##_command,
 static const struct command *const all[] = {COMMANDS(COMMAND_ADDRESS)};
 

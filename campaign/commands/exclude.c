@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/scheduler/scheduler.h"
 
 struct options {
   const char *reason;

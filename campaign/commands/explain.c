@@ -1,7 +1,6 @@
 /* `clast explain [PATH|WORD|SCENE]`: every path that has a row (of engines, the outcome, estimates and campaigns), the
  * words of the glossary, the columns of the store, and the model of a scene with its cost and its active inputs. */
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/words.h"
 #include "db/store/schema.h"

@@ -1,6 +1,5 @@
 /* `clast merge TARGET SOURCE...`: merges stores from several machines into one. */
 #include "campaign/commands/commands.h"
-#include "campaign/scheduler/scheduler.h"
 
 /* Adds one source. *differing counts the runs that both stores have with different results. */
 static status merge_source(struct store *store, const char *target, const char *source, int64_t *differing,

@@ -1,7 +1,6 @@
 /* `clast plan CAMPAIGN`: predicts the runs and the cost of a campaign. */
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
-#include "campaign/launch/launch.h"
 
 struct options {
   struct campaign_option campaign;

@@ -1,7 +1,6 @@
 /* `clast replay STORE RUN`: computes a stored run again and compares every bit. */
 #include "campaign/commands/commands.h"
 #include "campaign/one_run/one_run.h"
-#include "campaign/scheduler/run.h"
 
 struct options {
   const char *fields;

@@ -7,7 +7,6 @@
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
 
 enum { STORES = 8, EVERY_MOST = 86400 };
 enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };

@@ -1,5 +1,4 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
-#include "analysis/statistics/statistics.h"
 #include "campaign/commands/commands.h"
 
 struct options {

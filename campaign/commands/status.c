@@ -2,8 +2,6 @@
 #include <inttypes.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/progress.h"
-#include "schemas/text.h"
 
 enum { SILENT_S = 10 }; /* shorter silences tell nothing */
 

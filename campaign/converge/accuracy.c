@@ -6,16 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/converge/study.h"
-#include "campaign/terminal/progress.h"
-#include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
-#include "db/ask/ask.h"
 #include "engine/grow.h"
-#include "engine/scene.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum {
   FEWEST_SEEDS = 3,

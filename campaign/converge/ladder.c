@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/text.h"
-
 struct making {
   const struct knob *knob;
   const struct scene *base;

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/ask.h"
 #include "engine/grow.h"
 #include "schemas/memory.h"
 

@@ -8,11 +8,9 @@
 #include <string.h>
 
 #include "campaign/charts/charts.h"
-#include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
 #include "db/store/views.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 status study_print_knobs(const struct engine_kind *kind, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);

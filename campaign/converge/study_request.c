@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- the subject ---- */
 

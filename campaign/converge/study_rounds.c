@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "campaign/converge/study.h"
-#include "campaign/terminal/progress.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
 

@@ -10,7 +10,6 @@
 #include "engine/random.h"
 #include "schemas/memory.h"
 #include "schemas/rows.h"
-#include "schemas/text.h"
 
 #define ROW(path_, member_, kind_, unit_, ...)                                                                         \
   { .path = path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct campaign, member_), __VA_ARGS__ }

@@ -11,9 +11,7 @@
 #include "engine/grow.h"
 #include "schemas/csv.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 enum { LARGEST = 16 << 20, MOST_REPORTS = 10, CELL = 256 };

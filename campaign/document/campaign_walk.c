@@ -9,7 +9,6 @@
 #include "analysis/statistics/statistics.h"
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 status campaign_walk_begin(struct campaign_walk *walk, const struct campaign *campaign, struct error *error) {

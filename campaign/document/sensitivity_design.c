@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include "schemas/file.h"
-#include "schemas/limits.h"
-#include "schemas/text.h"
 
 static const double MORRIS_STEP = 0.5; /* change of the quantile: two of four levels */
 

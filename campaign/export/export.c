@@ -11,12 +11,8 @@
 
 #include "campaign/build_facts.h"
 #include "campaign/charts/charts.h"
-#include "db/ask/ask.h"
-#include "engine/engine.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- views and bits as text ---- */
 

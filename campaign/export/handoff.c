@@ -6,8 +6,6 @@
 
 #include "analysis/pictures/snapshot_read.h"
 #include "campaign/export/export.h"
-#include "db/ask/ask.h"
-#include "engine/outcome.h"
 #include "engine/snapshot_file.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"

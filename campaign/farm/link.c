@@ -1,6 +1,5 @@
 /* Non-blocking messages between ranks: collects frames, sends, receives, finalizes MPI. */
 #include "campaign/farm/farm_private.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 #include <dlfcn.h>

@@ -5,10 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 static const double LITTLE = 0.9; /* of a width, after twice the runs: 0.71 is usual */

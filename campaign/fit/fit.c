@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/design/design.h"
 #include "schemas/memory.h"
 
 double fit_transform(const struct observed_datum *datum, double value) {

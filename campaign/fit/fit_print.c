@@ -5,9 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 enum { WIDTH = 110, LABEL = 2 * FIELD_TEXT_SIZE, PARAGRAPH = (OBSERVED_DATA + 4) * LABEL };

@@ -7,7 +7,6 @@
 #include "campaign/fit/fit.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- a round as campaigns ---- */
 

@@ -9,7 +9,6 @@
 
 #include "campaign/charts/charts.h"
 #include "campaign/print/print.h"
-#include "campaign/scheduler/run.h"
 #include "campaign/terminal/words.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"

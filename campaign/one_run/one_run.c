@@ -13,13 +13,10 @@
 #include "analysis/pictures/snapshot_read.h"
 #include "campaign/charts/charts.h"
 #include "campaign/farm/farm.h"
-#include "engine/engine.h"
 #include "engine/restart.h"
 #include "schemas/clock.h"
-#include "schemas/field.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- a restart file: a run that can be stopped and goes on later ----
  * The stop signals of a farm write it and end the command with exit code 75. It is also written every few minutes, for

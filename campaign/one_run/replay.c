@@ -7,7 +7,6 @@
 
 #include "engine/cpu_class.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
                       struct run_result *result, struct error *error) {

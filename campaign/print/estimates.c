@@ -3,11 +3,7 @@
 #include <string.h>
 
 #include "campaign/print/print.h"
-#include "campaign/terminal/table.h"
 #include "campaign/terminal/words.h"
-#include "db/ask/ask.h"
-#include "schemas/limits.h"
-#include "schemas/text.h"
 
 /* What of the legend occurs in the table for people. */
 struct seen {

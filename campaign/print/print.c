@@ -5,10 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 void print_pool_columns(struct table *table, const struct ask_pools *pools) {
   struct ask_column axes[LIMITS_AXES_OF_TABLE];

@@ -7,9 +7,7 @@
 #include "campaign/print/print.h"
 #include "campaign/terminal/words.h"
 #include "engine/grow.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { COLUMNS = 100 };
 static const double EQUAL_NUMBERS = 0.05; /* numbers of elements that differ less are one size */

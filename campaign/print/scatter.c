@@ -4,14 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
-#include "campaign/document/campaign.h"
 #include "campaign/print/print.h"
 #include "campaign/terminal/words.h"
 #include "engine/grow.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { COLUMNS = 100 };
 

@@ -10,12 +10,9 @@
 #define uthash_nonfatal_oom(seen) free(seen)
 #include <uthash.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/scheduler/point.h"
 #include "schemas/clock.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 #define NOTHING ((double)NAN)
 

@@ -8,10 +8,8 @@
 #include "campaign/converge/ladder.h"
 #include "campaign/scheduler/point.h"
 #include "campaign/terminal/words.h"
-#include "db/store/store.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* ---- trials ---- */
 

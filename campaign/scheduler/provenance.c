@@ -8,8 +8,6 @@
 
 #include "campaign/build_facts.h"
 #include "engine/cpu_class.h"
-#include "engine/engine.h"
-#include "schemas/text.h"
 
 static void cpu_model(char *model, size_t size) {
   char line[512];

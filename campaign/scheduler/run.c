@@ -10,7 +10,6 @@
 #include "engine/restart.h"
 #include "engine/threads.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are

@@ -10,9 +10,7 @@
 
 #include "engine/grow.h"
 #include "schemas/clock.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { HELD_BYTES = 64 << 20 }; /* of reports while another program holds the store; then no new runs start */
 #define HELD_NOTED_S 10.0

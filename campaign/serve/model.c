@@ -1,7 +1,6 @@
 /* Checks that a campaign can be served, and makes scenes from vectors of numbers. */
 #include "campaign/serve/serve.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "campaign/terminal/table.h"
 #include "schemas/memory.h"
 

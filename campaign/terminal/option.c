@@ -9,8 +9,6 @@
 
 #include "analysis/pictures/picture_canvas.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
-#include "schemas/text.h"
 
 enum { HELP_VALUE = 1000, ROW_VALUE = 1001, WORD_MAXIMUM = 63 };
 

@@ -9,7 +9,6 @@
 
 #include "campaign/terminal/table.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 #define SOON 2.0 /* s */
 

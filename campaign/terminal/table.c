@@ -14,9 +14,7 @@
 #include "db/store/views.h"
 #include "engine/grow.h"
 #include "schemas/csv.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum {
   BATCH_ROWS = 500,       /* rows of the table for people that are laid out together */

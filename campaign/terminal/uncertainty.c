@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "schemas/text.h"
-
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 static const double SMALL = 1e-3;       /* below it a common power of ten is shorter than zeros */

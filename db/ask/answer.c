@@ -8,7 +8,6 @@
 
 #include "db/store/internal.h"
 #include "schemas/clock.h"
-#include "schemas/text.h"
 
 enum { STEPS_BETWEEN_LOOKS = 10000 };
 

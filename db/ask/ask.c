@@ -9,9 +9,7 @@
 #include "db/store/internal.h"
 #include "db/store/views.h"
 #include "engine/grow.h"
-#include "engine/scene.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 #include "schemas/unit.h"
 
 /* ---- campaigns and sessions ---- */

@@ -4,9 +4,6 @@
 
 #include <string.h>
 
-#include "engine/outcome.h"
-#include "schemas/text.h"
-
 /* Documents that the build embeds: db/ask/canned_point_stats.sql, db/ask/canned_scatter.sql. */
 extern const char canned_point_stats_sql[], canned_scatter_sql[];
 

@@ -8,7 +8,6 @@
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
-#include "schemas/text.h"
 
 static const char doing[] = "choosing runs";
 

@@ -1,13 +1,10 @@
 /* Counts the runs behind a number whose words mark or withhold it. */
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "db/sql.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
-#include "engine/engine.h"
-#include "schemas/text.h"
 
 static void add_word(struct ask_doubts *doubts, const char *word, const struct condition *row, int64_t runs) {
   size_t k = 0;

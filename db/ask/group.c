@@ -4,10 +4,7 @@
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
-#include "engine/engine.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { NAME = 128, NAMED = 6 };
 

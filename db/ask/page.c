@@ -7,15 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "db/sql.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
-#include "engine/engine.h"
 #include "engine/grow.h"
-#include "engine/outcome.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const char doing[] = "making the page";
 

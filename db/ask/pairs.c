@@ -7,11 +7,7 @@
 #include <string.h>
 
 #include "engine/grow.h"
-#include "engine/outcome.h"
-#include "engine/scene.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 struct group {  /* the runs of one point */
   char *list;   /* "path = value" of each varied input, with SEPARATOR between them: a value may have a comma */

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "db/sql.h"
-#include "engine/engine.h"
 #include "engine/grow.h"
 
 /* The newest version with runs that count (0: none), unless one is given, and the dimensions of the engine. */

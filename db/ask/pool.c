@@ -8,11 +8,8 @@
 
 #include "db/sql.h"
 #include "db/store/views.h"
-#include "engine/engine.h"
 #include "engine/grow.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 struct ask_pool_member { /* a point, in the order of the pools */
   int64_t point, version;

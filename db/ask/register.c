@@ -3,12 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "db/ask/answer.h"
 #include "db/store/internal.h"
-#include "engine/engine.h"
 #include "engine/grow.h"
-#include "schemas/text.h"
 
 /* mean(values): the bits of avg(), but where the sum leaves the range of double. */
 struct mean {

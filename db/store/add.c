@@ -6,9 +6,7 @@
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "engine/grow.h"
-#include "engine/scene.h"
 #include "schemas/clock.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 static const char adding_point[] = "adding a point";

@@ -10,9 +10,7 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
-#include "engine/scene.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const char checking[] = "checking";
 

@@ -10,7 +10,6 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* Both lanes are one to one in the word and in the state: an odd factor has an inverse, and so has x ^= x >> k. The
  * factors are those of splitmix64. */

@@ -9,9 +9,7 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { LONGEST_VALUE = 1 << 28 }; /* bytes of a text or blob: the masses of 3e7 fragments */
 

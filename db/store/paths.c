@@ -7,9 +7,7 @@
 #include <unistd.h>
 
 #include "db/store/internal.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 enum { PATHS_LONGEST = 2 * LIMITS_PATH };
 

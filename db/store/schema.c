@@ -6,9 +6,7 @@
 
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
-#include "engine/outcome.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const struct schema_column campaign[] = {
     {"campaign_id", "INTEGER PRIMARY KEY", NULL, "number of the campaign in this store"},

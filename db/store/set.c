@@ -3,7 +3,6 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const char writing[] = "writing estimates";
 

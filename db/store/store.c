@@ -1,5 +1,4 @@
 /* A store as a file: its place and lock, opening and closing, upgrades, copies, batches and sessions. */
-#include "db/store/store.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -18,7 +17,6 @@
 #include "db/store/views.h"
 #include "schemas/clock.h"
 #include "schemas/file.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 #define ALONE_S 10.0 /* SQLite waits so long for another program where no function was given to store_on_wait() */

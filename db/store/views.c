@@ -6,11 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/statistics.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 static const char doing[] = "making the views";
 

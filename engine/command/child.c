@@ -24,7 +24,6 @@
 #include <unistd.h>
 
 #include "schemas/clock.h"
-#include "schemas/limits.h"
 
 enum { DEPTH = 32, ENVIRONMENT = 16, ENTRY = 8192 };
 

@@ -11,8 +11,6 @@
 
 #include "engine/command/child.h"
 #include "engine/command/definition.h"
-#include "engine/condition.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 
 struct run {

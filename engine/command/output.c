@@ -12,7 +12,6 @@
 
 #include "engine/grow.h"
 #include "schemas/csv.h"
-#include "schemas/limits.h"
 #include "schemas/memory.h"
 #include "schemas/unit.h"
 

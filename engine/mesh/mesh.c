@@ -1,6 +1,5 @@
 /* Makes a mesh from its file, with all checks in order. Volume, centre of mass, extent, the point where a line leaves
  * the mesh, and the list of files that were read. */
-#include "engine/mesh/mesh.h"
 
 #include <math.h>
 #include <stdarg.h>

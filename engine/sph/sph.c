@@ -1,7 +1,6 @@
 /* The descriptor of engine `sph`: its calls are those of the run and its reports. */
 #include "engine/sph/sph.h"
 
-#include "engine/sph/material/material.h"
 #include "engine/sph/run/run.h"
 
 static int64_t *threads(void *inputs) {

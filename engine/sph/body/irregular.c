@@ -15,7 +15,6 @@
 
 #include "engine/random.h"
 #include "engine/sph/body/kd_tree.h"
-#include "engine/sph/body/particles.h"
 #include "schemas/memory.h"
 
 /* ---- pushing points apart ---- */

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "engine/random.h"
-#include "engine/sph/body/particles.h"
 
 /* Lattices cut by a shape's surface: the search for the offset that gives the wanted number of particles. */
 

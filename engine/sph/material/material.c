@@ -5,7 +5,6 @@
 #include "engine/builtin.h"
 #include "engine/scene.h"
 #include "engine/sph/material/material.h"
-#include "schemas/text.h"
 
 #define MATERIAL sph_material
 

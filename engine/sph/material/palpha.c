@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "engine/sph/material/material.h"
-
 /* 1. Curves */
 
 double sph_palpha_crush(const struct sph_palpha_law *law, double p) {

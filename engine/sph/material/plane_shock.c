@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "engine/sph/material/material.h"
-
 enum { HALVINGS = 100 }; /* of a bracket: to the last bit */
 static const double most_pressure = 1e16;
 static const struct sph_front none = {NAN, NAN, NAN, NAN, NAN, NAN};

@@ -5,9 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/outcome.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/step/system.h"
 #include "schemas/memory.h"
 
 enum { LOOK_INTERVAL = 8 }; /* steps between two checks of the damage */

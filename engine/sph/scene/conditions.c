@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/condition.h"
 #include "engine/mesh/mesh.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/run/run.h"

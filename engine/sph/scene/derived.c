@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/mesh/mesh.h"
-#include "engine/sph/body/bodies.h"
 
 enum { PISTON_LAYERS = 4 }; /* thicker than a support: no pair joins the plate and the piston's back */
 

@@ -6,12 +6,9 @@
 
 #include "engine/mesh/mesh.h"
 #include "engine/sph/material/palpha.h"
-#include "engine/sph/modules/module.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/step/system.h"
 #include "schemas/memory.h"
-#include "schemas/text.h"
 
 /* Memory beside the moving system: per particle (particles as set up and as read back, and fragments at the end; the
  * peak of a whole process less the system, measured), per flaw, and of any process. */

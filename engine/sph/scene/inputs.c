@@ -8,7 +8,6 @@
 #include "engine/input_rows.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/flaws.h"
-#include "engine/sph/material/material.h"
 
 static FIELD_WORDS(kinds, SPH_KINDS, [SPH_IMPACT] = "impact", [SPH_STRETCH] = "stretch", [SPH_VIBRATION] = "vibration",
                    [SPH_COLLISION] = "collision", [SPH_PISTON] = "piston");

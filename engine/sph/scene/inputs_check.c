@@ -3,13 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/sph/body/bodies.h"
-#include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
-#include "engine/sph/modules/module.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/scene/inputs.h"
-#include "schemas/text.h"
 
 #define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
 

@@ -2,11 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
-#include "engine/sph/modules/module.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/scene/inputs.h"
 
 static size_t row_at(size_t offset) {
   size_t row = 0;

@@ -2,12 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/sph/body/flaws.h"
 #include "engine/sph/material/palpha.h"
-#include "engine/sph/modules/module.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
-#include "engine/sph/step/system.h"
 #include "schemas/memory.h"
 
 enum { Z = 2 };

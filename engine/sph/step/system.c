@@ -9,8 +9,6 @@
 
 #include "engine/cpu_class.h"
 #include "engine/restart.h"
-#include "engine/sph/body/bodies.h"
-#include "engine/sph/material/material.h"
 #include "engine/threads.h"
 #include "schemas/memory.h"
 
