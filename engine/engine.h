@@ -6,9 +6,7 @@
 
 #include "engine/condition.h"
 #include "engine/ejecta.h"
-#include "engine/outcome.h"
 #include "schemas/document.h"
-#include "schemas/field.h"
 
 /* Knobs: inputs that make a run coarser or finer, or change the physics that it models. Each engine lists its own
  * (engine_kind.knobs): inputs, levels and meaning. Convergence studies (campaign/converge) vary knobs. */

@@ -6,7 +6,6 @@
 
 #include "engine/engine.h"
 #include "engine/mesh/mesh.h"
-#include "schemas/document.h"
 
 /* Named settings of a scene: numerical choices that belong together, such as those of a quick draft. A document gives
  * them under `settings`:

@@ -12,7 +12,6 @@
 #include "campaign/document/campaign.h"
 #include "campaign/launch/launch.h"
 #include "campaign/terminal/table.h"
-#include "schemas/limits.h"
 
 /* The quantity of a study: a result of every run, or an exponent fitted to all runs of a point. */
 struct study_quantity {

@@ -25,7 +25,7 @@ static void *make_fit(void *context) {
 static status write_fit(struct store *store, const struct fit *fit, struct error *error) {
   struct estimate rows[POINT_ESTIMATES];
   point_estimate_rows(fit->fits, rows);
-  return store_set_estimates(store, fit->which->point_id, 0, fit->which->results_version, POINT_ESTIMATES, rows, error);
+  return store_set_estimates(store, fit->which->point_id, fit->which->results_version, POINT_ESTIMATES, rows, error);
 }
 
 /* Waits for the fit and frees its point. Writes its estimates if `code` is STATUS_OK; else returns `code`. */

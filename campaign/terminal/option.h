@@ -12,8 +12,6 @@
 
 #include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"
-#include "db/store/store.h"
-#include "engine/scene.h"
 
 enum option_kind {
   OPTION_FLAG,    /* bool */

@@ -2,12 +2,7 @@
 #ifndef CLAST_DB_ASK_ASK_H
 #define CLAST_DB_ASK_ASK_H
 
-#include "analysis/statistics/convergence.h"
-#include "analysis/statistics/statistics.h"
 #include "db/ask/answer.h"
-#include "engine/ejecta.h"
-#include "engine/outcome.h"
-#include "schemas/limits.h"
 
 /* ---- The runs that all further questions to a store see: those of one point, of one campaign, and that meet an SQL
  * condition on the view runs; and among them, the runs that a person excluded, which no question counts. ---- */

@@ -3,10 +3,8 @@
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
-#include "analysis/statistics/statistics.h"
 #include "db/sql.h"
 #include "db/store/store.h"
-#include "schemas/limits.h"
 
 /* ---- digests ---- */
 

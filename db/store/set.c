@@ -25,14 +25,6 @@ status store_set_estimates_rows(struct store *store, int64_t run_id, size_t coun
   return sql_run(store->estimate, writing, error);
 }
 
-static status set_of_run(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
-                         struct error *error) {
-  TRY(sql_executef(store->db, writing, error, "DELETE FROM estimate WHERE run_id = %lld", (long long)run_id));
-  if (count)
-    TRY(store_set_estimates_rows(store, run_id, count, rows, error));
-  return digest_rows_fill(store->db, run_id, error);
-}
-
 status store_insert_estimates(sqlite3 *db, const char *table, int64_t point_id, int64_t results_version, size_t count,
                               const struct estimate *rows, struct error *error) {
   STATEMENT insert = NULL;
@@ -55,13 +47,10 @@ static status set_of_point(struct store *store, int64_t point_id, int results_ve
   return store_insert_estimates(store->db, "point_estimate", point_id, results_version, count, rows, error);
 }
 
-status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
+status store_set_estimates(struct store *store, int64_t point_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error) {
   TRY(store_begin(store, error));
-  return store_end(store,
-                   run_id > 0 ? set_of_run(store, run_id, count, rows, error)
-                              : set_of_point(store, point_id, results_version, count, rows, error),
-                   1, error);
+  return store_end(store, set_of_point(store, point_id, results_version, count, rows, error), 1, error);
 }
 
 /* SQL of `counts`, which the caller frees. */

@@ -111,9 +111,8 @@ struct store_attempt {
 };
 status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error);
 
-/* Replaces the estimates of a run (run_id > 0), or those of a point for one results_version (run_id = 0). Joins the
- * open batch. */
-status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
+/* Replaces the estimates of a point for one results_version. Joins the open batch. */
+status store_set_estimates(struct store *store, int64_t point_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error);
 /* Call after a decision of a stopping rule: the point's replicates below `prefix` count in its statistics, the others
  * are surplus. The running sums follow. Joins the open batch. */

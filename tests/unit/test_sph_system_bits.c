@@ -95,7 +95,7 @@ static void every_module(void **state) {
     case_steps(whole, 45);
     case_steps(again, 45);
     assert_same_bits(whole, again);
-    assert_true(sph_system_damage(whole, NULL) > 0 && whole->now.damped > 0 &&
+    assert_true(sph_system_damage(whole) > 0 && whole->now.damped > 0 &&
                 whole->now.listings > 1); /* all modules did act */
     double closed = 0;
     for (size_t i = 0; i < whole->n; i++)
@@ -130,7 +130,7 @@ static void no_axis_is_special(void **state) {
     }
     struct sph_system *s = case_system(p, 2, c.physics, &c.parameters);
     case_steps(s, 60);
-    assert_true(sph_system_damage(s, NULL) > 0);
+    assert_true(sph_system_damage(s) > 0);
     assert_int_equal(sph_particles_make(p->n, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &seen[scene], NULL), STATUS_OK);
     sph_system_read(s, seen[scene]);
     sph_system_free(s);

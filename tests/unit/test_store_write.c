@@ -283,13 +283,12 @@ static void estimates_are_replaced(void **state) {
   struct store *store = writer(fixture_path(path, "estimates"));
   OK(fixture_populate(store, 1, 1, 3, false, &error));
   struct estimate rows[2] = {{.window = ESTIMATES_FROM_2, .fit.beta = 2}, {.window = ESTIMATES_FROM_5, .fit.beta = 3}};
-  OK(store_set_estimates(store, 1, 0, 3, 2, rows, &error));
+  OK(store_set_estimates(store, 1, 3, 2, rows, &error));
   rows[0].fit.beta = 4;
-  OK(store_set_estimates(store, 1, 0, 3, 1, rows, &error));
-  OK(store_set_estimates(store, 1, 2, 3, 1, rows, &error));
+  OK(store_set_estimates(store, 1, 3, 1, rows, &error));
   assert_near(number(store, "SELECT count(*) FROM estimates WHERE run_id IS NULL"), 1, 0);
   assert_near(number(store, "SELECT beta FROM estimates WHERE run_id IS NULL"), 4, 0);
-  assert_near(number(store, "SELECT count(*) FROM estimates"), 6, 0);
+  assert_near(number(store, "SELECT count(*) FROM estimates"), 7, 0);
   OK(store_close(store, &error));
 }
 

@@ -15,7 +15,6 @@
 #include <stdint.h>
 
 #include "engine/sph/body/particles.h"
-#include "schemas/status.h"
 
 /* The true shapes of bodies: what is inside, sizes, distances, and points drawn uniformly from them. Both particles and
  * flaws are placed by these functions, so that a body is the same at every resolution. */

@@ -17,7 +17,6 @@
 
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
-#include "schemas/status.h"
 
 /* Cells of a body that crack as one (modules/crack_cell.h): cubes of a fixed width. The grid of cubes is turned and
  * shifted by the seed. A cube cut by the surface is a smaller cell. */

@@ -23,7 +23,6 @@
 #include <stdio.h>
 
 #include "engine/sph/material/material.h"
-#include "schemas/status.h"
 
 /* A law: the values given, the solid, and constants that follow from both. */
 struct sph_palpha_law {

@@ -14,7 +14,6 @@
 #include "engine/fragments.h"
 #include "engine/sph/body/particles.h"
 #include "engine/sph/observe/results.h"
-#include "schemas/status.h"
 
 struct sph_crater_options {
   size_t first, count;   /* particles of the target */

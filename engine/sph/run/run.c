@@ -44,7 +44,7 @@ static status make_system(struct sph_run *run, struct error *error) {
 /* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
 static void look_at_damage(struct sph_run *run) {
   struct sph_state *state = &run->state;
-  double damage = sph_system_damage(run->system, NULL), time = run->system->now.time;
+  double damage = sph_system_damage(run->system), time = run->system->now.time;
   if (isnan(state->first_damage)) {
     if (!(damage > 0))
       return;

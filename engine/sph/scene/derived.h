@@ -3,7 +3,6 @@
 #define CLAST_ENGINE_SPH_SCENE_DERIVED_H
 
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/material/material.h"
 #include "engine/sph/scene/inputs.h"
 #include "engine/sph/step/system.h"
 

@@ -324,7 +324,7 @@ void sph_protocol_record(struct sph_run *run) {
     return;
 
   const struct sph_particles *p = sph_run_read(run);
-  struct sph_sample sample = {.time = time, .damage = sph_system_damage(run->system, NULL)};
+  struct sph_sample sample = {.time = time, .damage = sph_system_damage(run->system)};
   if (run->inputs.kind == SPH_STRETCH) {
     sample.strain = run->inputs.stretch.rate * time;
     sample.stress = axial_stress(run, p);

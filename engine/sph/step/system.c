@@ -527,22 +527,18 @@ bool sph_system_flaws(const struct sph_system *s, uint32_t *count) {
   return any;
 }
 
-double sph_system_damage(const struct sph_system *s, double *rate) {
-  double volume = 0, damage = 0, growth = 0;
+double sph_system_damage(const struct sph_system *s) {
+  double volume = 0, damage = 0;
   for (size_t b = 0; b < s->body_count; b++) {
     const struct sph_solid *body = &s->solid[b];
-    const double *by_flaws = sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : s->c.damage;
     if (!flaws_of(body))
       continue;
     for (size_t i = body->first; i < body->last; i++) {
       const double v = s->c.mass[i], d = s->c.damage[i];
       volume += v;
       damage += v * d * d * d;
-      growth += v * 3 * by_flaws[i] * by_flaws[i] * s->c.damage_rate[i];
     }
   }
-  if (rate)
-    *rate = volume > 0 ? growth / volume : 0;
   return volume > 0 ? damage / volume : 0;
 }
 
