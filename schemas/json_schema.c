@@ -139,32 +139,46 @@ static bool same_start(const char *a, const char *b, size_t length) {
   return strncmp(a, b, length) == 0;
 }
 
-/* Is the row required, without a condition, below a prefix of `length` bytes? */
-static bool is_required(const struct field *row, const char *prefix, size_t length) {
-  return row->flags & FIELD_REQUIRED && !row->when && same_start(row->path, prefix, length);
-}
-
-/* Does an earlier required row have the same word, which ends at `end`? */
-static bool named_before(const struct field_table *table, size_t i, size_t end) {
-  for (size_t j = 0; j < i; j++) {
-    const struct field *row = &table->rows[j];
-    if (is_required(row, table->rows[i].path, end) && (row->path[end] == '.' || !row->path[end]))
+/* True when the row has this condition, or its controlling row depends on it. */
+static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
+  for (size_t links = 0; row && row->when && links <= table->count; links++) {
+    if (strcmp(row->when, when) == 0)
       return true;
+    row = field_controller(table, row);
   }
   return false;
+}
+
+/* Does the row rest on a condition? `when` NULL: is it required, without a condition? */
+static bool is_picked(const struct field_table *table, size_t i, const char *when) {
+  const struct field *row = &table->rows[i];
+  return when ? rests_on(table, row, when) : row->flags & FIELD_REQUIRED && !row->when;
+}
+
+/* Length of the word of row i behind a prefix of `length` bytes. 0: the row is not picked, or an earlier one that is
+ * has the same word. */
+static size_t picked_word(const struct field_table *table, size_t i, const char *when, const char *prefix,
+                          size_t length) {
+  const char *path = table->rows[i].path;
+  if (!same_start(path, prefix, length) || !is_picked(table, i, when))
+    return 0;
+  const size_t word = strcspn(path + length, "."), end = length + word;
+  for (size_t j = 0; j < i; j++) {
+    const char *other = table->rows[j].path;
+    if (same_start(other, path, end) && (other[end] == '.' || !other[end]) && is_picked(table, j, when))
+      return 0;
+  }
+  return word;
 }
 
 /* The words of one level that lead to a required row without a condition; returns how many. `out` NULL: counts only. */
 static int required(const struct field_table *table, const char *prefix, size_t length, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
-    const char *path = table->rows[i].path;
-    const size_t word = is_required(&table->rows[i], prefix, length) ? strcspn(path + length, ".") : 0;
-    if (!word || named_before(table, i, length + word))
-      continue;
-    if (out)
-      fprintf(out, "%s\"%.*s\"", count ? ", " : "", (int)word, path + length);
-    count++;
+    const size_t word = picked_word(table, i, NULL, prefix, length);
+    if (word && out)
+      fprintf(out, "%s\"%.*s\"", count ? ", " : "", (int)word, table->rows[i].path + length);
+    count += word > 0;
   }
   return count;
 }
@@ -247,36 +261,18 @@ void json_schema_properties(const struct field_table *table, int indent, FILE *o
 
 /* ---- conditions ---- */
 
-/* True when the row has this condition, or its controlling row depends on it. */
-static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
-  for (size_t links = 0; row && row->when && links <= table->count; links++) {
-    if (strcmp(row->when, when) == 0)
-      return true;
-    row = field_controller(table, row);
-  }
-  return false;
-}
-
 /* {"required": ["a"], "properties": {"a": {"required": ["b"], "properties": {"b": LEAF}}}} with `opened` braces to
  * close. */
-static int descend(const char *path, bool must, FILE *out) {
+static int descend(const char *path, FILE *out) {
   int opened = 0;
   for (;;) {
     size_t word = strcspn(path, ".");
-    if (must)
-      fprintf(out, "{\"required\": [\"%.*s\"], \"properties\": {\"%.*s\": ", (int)word, path, (int)word, path);
-    else
-      fprintf(out, "{\"properties\": {\"%.*s\": ", (int)word, path);
+    fprintf(out, "{\"required\": [\"%.*s\"], \"properties\": {\"%.*s\": ", (int)word, path, (int)word, path);
     opened += 2;
     if (!path[word])
       return opened;
     path += word + 1;
   }
-}
-
-static void close_braces(int opened, FILE *out) {
-  while (opened-- > 0)
-    fputc('}', out);
 }
 
 static void values(const struct field *row, const char *list, bool excluded, FILE *out) {
@@ -305,6 +301,30 @@ static bool holds_by_default(const struct field_table *table, const struct field
   return holds;
 }
 
+/* The rows that rest on a condition, as properties that are refused: {"properties": {"a": false, "b": {...}}}. */
+static void refused(const struct field_table *table, const char *when, const char *prefix, size_t length, int indent,
+                    FILE *out) {
+  bool first = true;
+  fputs("{\"properties\": {", out);
+  for (size_t i = 0; i < table->count; i++) {
+    const char *path = table->rows[i].path;
+    const size_t word = picked_word(table, i, when, prefix, length);
+    if (!word)
+      continue;
+    if (!first)
+      fputc(',', out);
+    if (path[length + word] == '.') {
+      margin(indent, out);
+      fprintf(out, "\"%.*s\": ", (int)word, path + length);
+      refused(table, when, path, length + word + 1, indent + 1, out);
+    } else {
+      fprintf(out, "%s\"%.*s\": false", first ? "" : " ", (int)word, path + length);
+    }
+    first = false;
+  }
+  fputs("}}", out);
+}
+
 /* "The condition holds, or no row that depends on it is given": an if/then clause. It is if/else when the condition
  * holds by default, so that a document without the controlling key follows the default. */
 static void write_condition(const struct field_table *table, const struct field *control, const char *when, int indent,
@@ -312,24 +332,13 @@ static void write_condition(const struct field_table *table, const struct field 
   const bool holds = holds_by_default(table, control, when);
   margin(indent, out);
   fputs("{\"if\": ", out);
-  int opened = descend(control->path, true, out);
+  int opened = descend(control->path, out);
   values(control, strchr(when, '=') + 1, holds, out);
-  close_braces(opened, out);
-  fprintf(out, ", \"%s\": {\"allOf\": [", holds ? "then" : "else");
-
-  bool first = true;
-  for (size_t k = 0; k < table->count; k++) {
-    if (!rests_on(table, &table->rows[k], when))
-      continue;
-    if (!first)
-      fputc(',', out);
-    first = false;
-    margin(indent + 1, out);
-    opened = descend(table->rows[k].path, false, out);
-    fputs("false", out);
-    close_braces(opened, out);
-  }
-  fputs("]}}", out);
+  while (opened-- > 0)
+    fputc('}', out);
+  fprintf(out, ", \"%s\": ", holds ? "then" : "else");
+  refused(table, when, "", 0, indent + 1, out);
+  fputc('}', out);
 }
 
 /* Writes one clause per condition, as items of an allOf array; returns how many. */
