@@ -3,6 +3,8 @@
 #ifndef CLAST_ENGINE_BUILTIN_H
 #define CLAST_ENGINE_BUILTIN_H
 
+#include <string.h>
+
 struct builtin_document {
   const char *name, *text;
 };
@@ -10,5 +12,12 @@ struct builtin_document {
  * `custom` last. */
 extern const struct builtin_document builtin_scene_list[], builtin_material_list[];
 extern const char *const builtin_material_names[];
+
+/* The text of a document of a list; NULL: it has none of this name. */
+static inline const char *builtin_text(const struct builtin_document *list, const char *name) {
+  while (list->name && strcmp(list->name, name) != 0)
+    list++;
+  return list->text;
+}
 
 #endif

@@ -26,10 +26,7 @@ const char *scene_builtin_name(size_t index) {
 }
 
 const char *scene_builtin_text(const char *name) {
-  for (size_t i = 0; builtin_scene_list[i].name; i++)
-    if (strcmp(builtin_scene_list[i].name, name) == 0)
-      return builtin_scene_list[i].text;
-  return NULL;
+  return builtin_text(builtin_scene_list, name);
 }
 
 static status unknown_builtin(const char *name, struct error *error) {

@@ -303,7 +303,7 @@ enum { MOST_ROWS = 10000000 };
 enum amount { SINGLE, COUNT, COUNT_ABOVE, RETAINED, RETAINED_ABOVE, PASSING };
 
 struct row {
-  double mass, amount;
+  double mass, amount; /* the mass comes first: sample_ascending() sorts by it */
 };
 
 struct reading {
@@ -601,10 +601,6 @@ static bool numbers_rows(const struct reading *r) {
   return true;
 }
 
-static int ascending(const void *a, const void *b) {
-  return sample_ascending(&((const struct row *)a)->mass, &((const struct row *)b)->mass);
-}
-
 /* Converts rows into what is at least as heavy, at ascending masses. */
 static status take_rows(struct reading *r, struct error *error) {
   struct measured *out = r->out;
@@ -619,7 +615,7 @@ static status take_rows(struct reading *r, struct error *error) {
   TRY(memory_array(&out->mass, r->count, sizeof *out->mass, r->path, error));
   TRY(memory_array(&out->above, r->count, sizeof *out->above, r->path, error));
   out->n = r->count;
-  qsort(r->rows, r->count, sizeof *r->rows, ascending);
+  qsort(r->rows, r->count, sizeof *r->rows, sample_ascending); /* by mass */
   double above = 0;
   for (size_t i = r->count; i-- > 0;) {
     if (cumulative && r->rows[i].amount < above)

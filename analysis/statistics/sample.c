@@ -43,6 +43,17 @@ status sample_squares_fit(size_t n, const double *values, struct error *error) {
   return STATUS_OK;
 }
 
+status sample_about_mean(size_t n, const double *values, double **about, struct error *error) {
+  double mean = 0;
+  TRY(sample_squares_fit(n, values, error));
+  TRY(memory_array(about, n, sizeof **about, "the parts of a variance", error));
+  for (size_t i = 0; i < n; i++)
+    mean += values[i] / (double)n;
+  for (size_t i = 0; i < n; i++)
+    (*about)[i] = values[i] - mean;
+  return STATUS_OK;
+}
+
 void sample_add(struct sample_moments *moments, double value) {
   if (isnan(value))
     return;

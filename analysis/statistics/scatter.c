@@ -382,15 +382,8 @@ static status split_about_mean(const struct scatter_table *t, struct scatter_par
 /* Values less their mean have the same parts, and squares of small differences are not lost in those of the mean. */
 status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
   OWNED double *value = NULL;
-  const size_t count = t->points * t->runs;
   struct scatter_table about_mean = *t;
-  double mean = 0;
-  TRY(sample_squares_fit(count, t->value, error));
-  TRY(memory_array(&value, count, sizeof *value, "the parts of a variance", error));
-  for (size_t i = 0; i < count; i++)
-    mean += t->value[i] / (double)count;
-  for (size_t i = 0; i < count; i++)
-    value[i] = t->value[i] - mean;
+  TRY(sample_about_mean(t->points * t->runs, t->value, &value, error));
   about_mean.value = value;
   return split_about_mean(&about_mean, parts, error);
 }

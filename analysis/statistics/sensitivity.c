@@ -164,17 +164,11 @@ status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_i
   if (t->blocks < 2 || t->seeds < 1 || t->inputs < 1)
     return status_fail(error, STATUS_USAGE, "Sobol indices need at least two blocks of points with a result, not %zu",
                        t->blocks);
-  TRY(sample_squares_fit(n, t->value, error));
   OWNED double *centred = NULL;
   OWNED uint32_t *all = NULL, *in_groups = NULL;
-  double mean = 0;
-  TRY(memory_array(&centred, n, sizeof *centred, "the indices", error));
+  TRY(sample_about_mean(n, t->value, &centred, error));
   TRY(memory_array(&in_groups, t->blocks, sizeof *in_groups, "the indices", error));
   TRY(memory_array(&all, most, sizeof *all, "the indices", error));
-  for (size_t i = 0; i < n; i++)
-    mean += t->value[i] / (double)n;
-  for (size_t i = 0; i < n; i++)
-    centred[i] = t->value[i] - mean;
   for (size_t i = 0; i < most; i++)
     all[i] = (uint32_t)i;
   struct asking a = {.table = t,

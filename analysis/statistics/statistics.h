@@ -34,6 +34,8 @@ struct sample_moments {
 double sample_scale(double largest);
 /* Where variances are wanted, not their roots. STATUS_USAGE: no double holds them. */
 status sample_squares_fit(size_t n, const double *values, struct error *error);
+/* The same, and *about: the values less their mean, which the caller frees. */
+status sample_about_mean(size_t n, const double *values, double **about, struct error *error);
 void sample_add(struct sample_moments *moments, double value); /* NaN is left out */
 
 struct sample_summary {

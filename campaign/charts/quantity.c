@@ -518,11 +518,6 @@ static status add_mean(struct plot *plot, const struct row *row, struct error *e
   return STATUS_OK;
 }
 
-static int ascending(const void *a, const void *b) {
-  const double x = ((const struct picture_mean *)a)->x, y = ((const struct picture_mean *)b)->x;
-  return (x > y) - (x < y);
-}
-
 /* "weibull_k (1/m^3) = 5e+34"; the version is given only if there are several. */
 static void label_lines(struct plot *plot, const char *by) {
   bool several = false;
@@ -538,7 +533,7 @@ static void label_lines(struct plot *plot, const char *by) {
     if (several)
       snprintf(version, sizeof version, "%sresults_version %lld", two ? ", " : "", (long long)line->first->version);
     snprintf(line->label, sizeof line->label, "%s%s", input, version);
-    qsort(line->means, line->count, sizeof *line->means, ascending);
+    qsort(line->means, line->count, sizeof *line->means, sample_ascending); /* by x, which comes first */
   }
 }
 

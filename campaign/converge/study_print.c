@@ -433,18 +433,6 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
 
 enum { OF_LIMIT = 2 }; /* the columns of a limit after knob and quantity, which a level has too */
 
-static void print_value(struct table *table, const struct field *row, const void *of) {
-  struct field_value value;
-  field_get(row, of, &value);
-  switch (row->kind) {
-  case FIELD_TEXT:
-  case FIELD_CHOICE: table_text(table, value.text); return;
-  case FIELD_INTEGER: table_integer(table, value.integer); return;
-  case FIELD_BOOLEAN: table_boolean(table, value.number != 0); return;
-  case FIELD_REAL: table_real(table, value.number); return;
-  }
-}
-
 static status print_rows(const struct printing *printing, size_t from, size_t quantity, size_t count,
                          const struct study_found *found, struct table *table, struct error *error) {
   for (size_t i = 0; i < count; i++)
@@ -453,11 +441,11 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
       TRY(read_doubts(printing, &printing->study->ladder[from + i], l, quantity, &doubts, error));
       const struct study *study = printing->study;
       for (size_t a = 0; a < study->varied_count; a++)
-        print_value(table, study->varied[a].row, study->ladder[from].base->inputs);
+        table_field(table, study->varied[a].row, study->ladder[from].base->inputs);
       for (size_t c = 0; c < convergence_table.count; c++)
-        print_value(table, &convergence_table.rows[c], &found[i].rows[l]);
+        table_field(table, &convergence_table.rows[c], &found[i].rows[l]);
       for (size_t c = OF_LIMIT; c < convergence_limit_table.count; c++)
-        print_value(table, &convergence_limit_table.rows[c], &found[i].limit);
+        table_field(table, &convergence_limit_table.rows[c], &found[i].limit);
       table_text(table, ask_resolution_names[verdict_of(found[i].rows[l].error, found[i].rows[l].at_least)]);
       table_doubt_cells(table, &doubts);
     }

@@ -389,10 +389,7 @@ static status run_study(struct study *study, const struct study_request *request
                                 .next = next_round,
                                 .done = end_round,
                                 .is_enough = is_enough};
-  struct series_summary summary;
-  launch.scheduler.store_path = study->limits.store;
-  const status code = driver_run_series(&series, launch.farm, &launch.scheduler, &summary, error);
-  launch_tell_series(&launch, code, study->limits.store, &summary, false);
+  const status code = launch_series(&launch, &series, false, error);
   if (!launch.manager || code != STATUS_OK)
     return code;
   int64_t most = 0;

@@ -138,11 +138,6 @@ static void read_datum(struct reading *r, document_node *node) {
 
 /* ---- a list of masses ---- */
 
-static int descending(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
-}
-
 /* Takes the largest fragment, and the numbers of fragments above up to four masses. These are evenly spaced in the
  * logarithm, from the second largest fragment to the mass down to which the list is complete. A fragment of just such a
  * mass counts. Rounding must not decide that, so the masses are smaller by a billionth, which no balance resolves. */
@@ -150,7 +145,7 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
                         const struct fragments *of) {
   enum { STEPS = 4 };
   const double total = of->total;
-  qsort(masses, count, sizeof *masses, descending);
+  qsort(masses, count, sizeof *masses, sample_descending);
   struct observed_datum *largest = add_datum(r, node);
   if (!largest)
     return;

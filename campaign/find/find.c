@@ -357,17 +357,14 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   LAUNCH launch = {0};
   TRY(launch_begin(&launch, &find->limits, &request->launch, line, error));
   const struct series series = {.context = find, .limits = &find->limits, .next = next_round, .done = end_round};
-  struct series_summary summary;
   find->note = launch_note;
   find->note_context = &launch.notes;
-  launch.scheduler.store_path = find->limits.store;
   if (launch.manager && !launch.notes.quiet)
     fprintf(stderr,
             "clast: at most %zu runs, %d at first; --plan tells what they cost. They are campaigns of their own in "
             "%s; questions about other campaigns leave them out\n",
             find->most, FIND_FEWEST_RUNS, find->limits.store);
-  const status code = driver_run_series(&series, launch.farm, &launch.scheduler, &summary, error);
-  launch_tell_series(&launch, code, find->limits.store, &summary, true);
+  const status code = launch_series(&launch, &series, true, error);
   if (!launch.manager || code != STATUS_OK)
     return code;
   TRY(find_print(find, line->format, error));

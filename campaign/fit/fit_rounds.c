@@ -327,13 +327,10 @@ static status run_fit(struct fit *fit, const struct fit_launch *options, const s
   LAUNCH launch = {0};
   TRY(launch_begin(&launch, fit->campaign, &options->launch, line, error));
   const struct series series = {.context = fit, .limits = fit->campaign, .next = next_round, .done = end_round};
-  const char *store = launch.scheduler.store_path = fit->campaign->store;
-  struct series_summary summary;
   if (launch.manager && !launch.notes.quiet)
     fprintf(stderr, "clast: at most %" PRId64 " runs in %" PRId64 " rounds\n",
             (int64_t)(fit->observed->shot_count * fit->members * fit->replicates) * options->rounds, options->rounds);
-  const status code = driver_run_series(&series, launch.farm, &launch.scheduler, &summary, error);
-  launch_tell_series(&launch, code, store, &summary, true);
+  const status code = launch_series(&launch, &series, true, error);
   if (!launch.manager || code != STATUS_OK)
     return code;
   TRY(fit_find(fit, error));

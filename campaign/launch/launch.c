@@ -35,8 +35,10 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
   fputc('\n', stderr);
 }
 
-void launch_tell_series(struct launch *launch, status code, const char *store, const struct series_summary *summary,
-                        bool found) {
+status launch_series(struct launch *launch, const struct series *series, bool found, struct error *error) {
+  struct series_summary summary;
+  const char *store = launch->scheduler.store_path = series->limits->store;
+  const status code = driver_run_series(series, launch->farm, &launch->scheduler, &summary, error);
   launch_end_progress(launch);
   STORE answers = NULL;
   int64_t excluded = 0; /* a run can belong to several campaigns of the series */
@@ -44,12 +46,13 @@ void launch_tell_series(struct launch *launch, status code, const char *store, c
       ask_run_excluded_count(answers, &excluded, NULL) == STATUS_OK)
     uncertainty_excluded(excluded, store);
   if (!launch->manager || launch->notes.quiet)
-    return;
+    return code;
   if (code == STATUS_OK || code == STATUS_STOPPED)
-    launch_tell_runs(store, summary->runs_done, found ? summary->runs_reused : -1, summary->cpu_s,
+    launch_tell_runs(store, summary.runs_done, found ? summary.runs_reused : -1, summary.cpu_s,
                      clock_s() - launch->begin_s);
-  if (summary->runs_failed)
+  if (summary.runs_failed)
     fprintf(stderr, "some runs failed: clast query %s --named failures\n", store);
+  return code;
 }
 
 status launch_begin(struct launch *launch, const struct campaign *limits, const struct launch_options *options,

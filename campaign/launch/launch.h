@@ -51,13 +51,12 @@ void launch_end(struct launch *launch); /* for LAUNCH; a zeroed one is fine */
 /* Prints a line on stderr: how many runs were computed, and how many were found in the store (-1: left out). */
 void launch_tell_runs(const char *store, int64_t computed, int64_t found, double cpu_s, double wall_s);
 
-/* No progress is shown from here on. launch_tell_series() and launch_end() do it, too. */
+/* No progress is shown from here on. launch_series() and launch_end() do it, too. */
 void launch_end_progress(struct launch *launch);
 
-/* The same for a series that ended with `code`, and a line when runs failed. Prints nothing on other ranks or when the
- * user asked for quiet. found: whether to tell how many were found in the store. */
-void launch_tell_series(struct launch *launch, status code, const char *store, const struct series_summary *summary,
-                        bool found);
+/* Runs a series (driver_run_series()) into the store of its limits. Then prints that line, and one when runs failed;
+ * nothing on other ranks or when the user asked for quiet. found: whether to tell how many were found in the store. */
+status launch_series(struct launch *launch, const struct series *series, bool found, struct error *error);
 
 /* Runs at a time on all ranks, as the farm will have them: known before it starts. slots: the option; 0: not given. */
 int launch_slots(int64_t slots);

@@ -32,21 +32,13 @@ void print_pool_cells(struct table *table, const struct ask_pools *pools, const 
 
 /* A withheld value is empty; people see a mark behind one that is in doubt. */
 static void value_cell(struct table *table, const struct field *row, const void *object, enum condition_mark mark) {
-  struct field_value value;
-  field_get(row, object, &value);
   if (mark == CONDITION_WITHHELD) {
     table_real(table, NAN);
     return;
   }
   if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
     table_rests_on(table, &(struct ask_doubts){.runs = 1, .doubtful = mark == CONDITION_MARKED});
-  switch (row->kind) {
-  case FIELD_REAL: table_real(table, value.number); break;
-  case FIELD_INTEGER: table_integer(table, value.integer); break;
-  case FIELD_BOOLEAN: table_boolean(table, value.number != 0); break;
-  case FIELD_CHOICE:
-  case FIELD_TEXT: table_text(table, value.text); break;
-  }
+  table_field(table, row, object);
 }
 
 /* `dimensions`: of the engine; 2: masses are per metre of thickness. */

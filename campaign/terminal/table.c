@@ -936,6 +936,18 @@ void table_value(struct table *table, const struct query_value *value) {
   }
 }
 
+void table_field(struct table *table, const struct field *row, const void *object) {
+  struct field_value value;
+  field_get(row, object, &value);
+  switch (row->kind) {
+  case FIELD_REAL: table_real(table, value.number); break;
+  case FIELD_INTEGER: table_integer(table, value.integer); break;
+  case FIELD_BOOLEAN: table_boolean(table, value.number != 0); break;
+  case FIELD_CHOICE:
+  case FIELD_TEXT: table_text(table, value.text); break;
+  }
+}
+
 static void print_row(struct rows *rows, const struct answer *answer) {
   for (size_t i = 0; i < answer_count(answer); i++) {
     const struct query_value value = answer_value(answer, i);

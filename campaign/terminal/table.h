@@ -83,6 +83,8 @@ status table_answer(struct answer answer, bool written, enum table_format format
 
 /* Adds one cell: number, text or missing. Not for QUERY_BLOB. */
 void table_value(struct table *table, const struct query_value *value);
+/* Adds one cell: the value of a row in its object. */
+void table_field(struct table *table, const struct field *row, const void *object);
 
 /* Flushes stdout; returns the same statuses as table_end. For commands that print text. */
 status table_flush(FILE *out, struct error *error);

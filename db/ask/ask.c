@@ -16,7 +16,7 @@
 
 extern const char progress_sql[]; /* db/ask/progress.sql, which the build embeds */
 
-/* The earlier forms of campaigns, as in progress.sql: those whose points a later campaign of the name has. */
+/* The earlier forms of campaigns: those whose points a later campaign of the name has. */
 #define EARLIER                                                                                                        \
   "earlier AS (SELECT campaign_id FROM campaign WHERE EXISTS (SELECT 1 FROM campaign AS later WHERE later.name = "     \
   "campaign.name AND later.campaign_id > campaign.campaign_id AND NOT EXISTS (SELECT 1 FROM campaign_point AS p "      \
@@ -25,7 +25,8 @@ extern const char progress_sql[]; /* db/ask/progress.sql, which the build embeds
 
 struct answer ask_campaign_progress(struct store *store, bool writing, bool earlier, struct error *error) {
   const struct query_parameter parameters[] = {{"writing", writing ? "1" : "0"}, {"earlier", earlier ? "1" : "0"}};
-  return answer_to_user(store, progress_sql, 2, parameters, 0, error);
+  SQL_TEXT sql = sql_format("WITH " EARLIER ",\n%s", progress_sql);
+  return answer_to_user(store, sql, 2, parameters, 0, error);
 }
 
 double ask_campaign_silence(struct store *store) {
@@ -56,11 +57,10 @@ void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *share
 
 int64_t ask_campaign_levels(struct store *store) {
   double points = 0;
-  const status code = answer_number(
-      store, &points, NULL,
-      "SELECT count(*) FROM points WHERE point_id IN (SELECT point_id FROM campaign_point) AND point_id NOT IN (SELECT "
-      "point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT %s)",
-      CAMPAIGN_IS_ROUND);
+  const status code =
+      answer_number(store, &points, NULL,
+                    "SELECT count(*) FROM points AS p WHERE point_id IN (SELECT point_id FROM campaign_point) AND %s",
+                    POINT_IS_OF_NO_CAMPAIGN(""));
   return code == STATUS_OK ? (int64_t)points : 0;
 }
 

@@ -1,8 +1,8 @@
--- The progress of campaigns. :earlier is 0 for those without an earlier form of a campaign, one whose points a later
--- campaign of its name has. :writing is 1 while a process writes the store. The last session has the largest number:
+-- The progress of campaigns, behind "WITH earlier AS (...)," of ask.c: the earlier forms of campaigns. :earlier is 0 for
+-- those without them. :writing is 1 while a process writes the store. The last session has the largest number:
 -- clocks are set back at times. Without earlier forms, the rounds of one search or study are one line, in which a point
 -- that several of them have counts once.
-WITH last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome,
+last AS (SELECT campaign_id, max(session_id) AS session_id, started_at, ended_at, outcome,
   coalesce(facts ->> '$.points_unmet', facts ->> '$.points_too_wide') AS rule_unmet,
   (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) AS command FROM session GROUP BY campaign_id),
 planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,
@@ -20,9 +20,7 @@ each AS (SELECT campaign_id, name, document LIKE '# Written by clast %' AS is_ro
   last.started_at, last.ended_at, last.command, last.rule_unmet
 FROM campaign LEFT JOIN last USING (campaign_id) LEFT JOIN planned USING (campaign_id)
   LEFT JOIN filled USING (campaign_id)
-WHERE :earlier OR NOT EXISTS (SELECT 1 FROM campaign AS later WHERE later.name = campaign.name AND later.campaign_id > campaign.campaign_id
-    AND NOT EXISTS (SELECT 1 FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id
-      AND p.point_id NOT IN (SELECT point_id FROM campaign_point AS q WHERE q.campaign_id = later.campaign_id)))),
+WHERE :earlier OR campaign_id NOT IN earlier),
 lines AS (SELECT iif(is_round AND NOT :earlier, name || ' ' || state, campaign_id) AS line, * FROM each),
 member AS (SELECT DISTINCT line, point_id FROM lines JOIN campaign_point USING (campaign_id)),
 size AS (SELECT line, count(*) AS points FROM member GROUP BY line),

@@ -12,16 +12,18 @@
 
 /* SQL: did clast write the document of this campaign, a round of a study or a search (converge, find, fit)? */
 #define CAMPAIGN_IS_ROUND "ifnull(document LIKE '# Written by clast %', 0)"
-/* SQL that is true of row p, of a table with point_id: only studies and searches asked for it, in a store with other
- * campaigns. Also of a point without a campaign and without runs, which a study that was stopped had planned. in_:
- * "main.", beside temporary views of the same names (db/ask/choose.c); "" in the file, which another program may
- * attach. */
+/* SQL that is true of row p, of a table with point_id: no campaign that a person wrote has the point. in_: "main.",
+ * beside temporary views of the same names (db/ask/choose.c); "" in the file, which another program may attach. */
+#define POINT_IS_OF_NO_CAMPAIGN(in_)                                                                                   \
+  "p.point_id NOT IN (SELECT point_id FROM " in_ "campaign_point JOIN " in_                                            \
+  "campaign USING (campaign_id) WHERE NOT " CAMPAIGN_IS_ROUND ")"
+/* The same, of a store with such campaigns: only studies and searches asked for it. Also of a point without a campaign
+ * and without runs, which a study that was stopped had planned. */
 #define POINT_IS_OF_STUDY(in_)                                                                                         \
   "EXISTS (SELECT 1 FROM " in_ "campaign WHERE NOT " CAMPAIGN_IS_ROUND                                                 \
-  ") AND p.point_id NOT IN (SELECT point_id FROM " in_ "campaign_point JOIN " in_                                      \
-  "campaign USING (campaign_id) WHERE NOT " CAMPAIGN_IS_ROUND ") AND (p.point_id IN "                                  \
-  "(SELECT point_id FROM " in_ "campaign_point) OR NOT EXISTS (SELECT 1 FROM " in_ "run AS x WHERE x.point_id = "      \
-  "p.point_id))"
+  ") AND " POINT_IS_OF_NO_CAMPAIGN(in_) " AND (p.point_id IN (SELECT point_id FROM " in_                               \
+                                        "campaign_point) OR NOT EXISTS (SELECT 1 FROM " in_                            \
+                                        "run AS x WHERE x.point_id = p.point_id))"
 
 enum { VIEWS_COUNT = 5 };
 extern const char *const views_names[VIEWS_COUNT];

@@ -91,8 +91,7 @@ static void table_is_whole(void **state) {
 
 static void every_material_is_sound(void **state) {
   (void)state;
-  assert_true(sph_materials_count() >= 10);
-  for (size_t i = 0; i < sph_materials_count(); i++) {
+  for (size_t i = 0; i < 10 || sph_materials_name(i); i++) { /* there are ten or more */
     struct sph_material m;
     struct error error = {0};
     const char *name = sph_materials_name(i);

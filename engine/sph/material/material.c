@@ -32,22 +32,12 @@ size_t sph_materials_row(size_t offset) {
   return row;
 }
 
-size_t sph_materials_count(void) {
-  size_t count = 0;
-  while (builtin_material_list[count].name)
-    count++;
-  return count;
-}
-
 const char *sph_materials_name(size_t index) {
-  return index < sph_materials_count() ? builtin_material_list[index].name : NULL;
+  return builtin_material_list[index].name;
 }
 
 const char *sph_materials_text(const char *name) {
-  for (size_t i = 0; builtin_material_list[i].name; i++)
-    if (strcmp(builtin_material_list[i].name, name) == 0)
-      return builtin_material_list[i].text;
-  return NULL;
+  return builtin_text(builtin_material_list, name);
 }
 
 /* Is it a value, or a section of values? */

@@ -89,8 +89,7 @@ extern const struct engine_materials sph_materials;   /* the functions below, fo
 
 /* The row of a member of struct sph_material, by its offset. */
 size_t sph_materials_row(size_t offset);
-size_t sph_materials_count(void);
-const char *sph_materials_name(size_t index);     /* sorted; NULL beyond the last */
+const char *sph_materials_name(size_t index);     /* sorted; NULL behind the last one */
 const char *sph_materials_text(const char *name); /* the document, or NULL */
 /* STATUS_MISSING with the nearest name; STATUS_CONTENT with the report when the document has a fault. */
 status sph_materials_load(const char *name, void *out, struct error *error);
