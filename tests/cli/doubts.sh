@@ -278,4 +278,12 @@ for word in $(sed -n 's/^- \*\*\([a-z]*\)\*\* .*/\1/p' out | sort -u); do
   grep -q "^- \*\*$word\*\* " said || fail "explain $word does not tell the condition"
 done
 ok "every condition is explained"
-done_after 121
+# The functions that the help of query names are there.
+expect 0 "$clast" query --help
+named=$(sed '/^options:/q' out | grep -o '[a-z_][a-z_]*(' | sort -u | xargs)
+same "$named" "doubts( hist_sum( median( stdev(" "functions in the help of query"
+for function in $named; do
+  "$clast" query marked.db "select $function)" >out 2>err
+  says "wrong number of arguments to function $function)"
+done
+done_after 123
