@@ -677,20 +677,45 @@ of_knob AS (SELECT base_point_id, results_version, quantity, knob, max(iif(base,
 asked AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id, false AS named FROM level
   UNION ALL SELECT base_point_id, results_version, quantity, point_id, true FROM convergence
     WHERE knob = 'settings' AND reference),
-of_study AS (SELECT a.*, sum(coalesce(l.resolution, k.at_base, k.largest)) AS error, max(k.diverges) AS diverges,
-    max(iif(k.largest IS NULL, 2, coalesce(l.open, k.base_open, 1) OR coalesce(l.resolution, k.at_base) IS NULL))
-      AS open
+knob_path AS MATERIALIZED (SELECT DISTINCT l.base_point_id, l.knob, i.path
+  FROM level l JOIN point_input i ON i.point_id = l.point_id
+    LEFT JOIN point_input b ON b.point_id = l.base_point_id AND b.path = i.path WHERE i.value IS NOT b.value),
+-- A point belongs to a study, too, if it differs from the scene studied in settings of knobs only.
+kin AS MATERIALIZED (SELECT p.point_id, s.base_point_id
+  FROM (SELECT DISTINCT point_id FROM level) p, (SELECT DISTINCT base_point_id FROM level) s
+  WHERE NOT EXISTS (SELECT 1 FROM point_input i LEFT JOIN point_input b ON b.point_id = s.base_point_id
+      AND b.path = i.path WHERE i.point_id = p.point_id AND i.value IS NOT b.value
+      AND i.path NOT IN (SELECT path FROM knob_path))
+    AND NOT EXISTS (SELECT 1 FROM point_input b LEFT JOIN point_input i ON i.point_id = p.point_id AND i.path = b.path
+      WHERE b.point_id = s.base_point_id AND i.value IS NULL AND b.path NOT IN (SELECT path FROM knob_path))),
+-- There, it has the error of a knob whose setting it has.
+of_kin AS (SELECT k.point_id, l.results_version, l.quantity, l.knob, l.resolution AS error, coalesce(l.open, 1) AS open
+  FROM kin k JOIN level l USING (base_point_id)
+  WHERE l.resolution IS NOT NULL AND NOT EXISTS (SELECT 1 FROM knob_path q
+    LEFT JOIN point_input i ON i.point_id = l.point_id AND i.path = q.path
+    LEFT JOIN point_input n ON n.point_id = k.point_id AND n.path = q.path
+    WHERE q.base_point_id = l.base_point_id AND q.knob = l.knob AND i.value IS NOT n.value)),
+of_study AS (SELECT a.*, k.knob, coalesce(l.resolution, k.at_base, k.largest) AS error, k.diverges,
+    iif(k.largest IS NULL, 2, coalesce(l.open, k.base_open, 1) OR coalesce(l.resolution, k.at_base) IS NULL) AS open
   FROM asked a JOIN of_knob k USING (base_point_id, results_version, quantity)
     LEFT JOIN level l ON l.base_point_id = a.base_point_id AND l.results_version = a.results_version
     AND l.quantity = a.quantity AND l.knob = k.knob AND (l.point_id = a.point_id OR a.named AND NOT l.base AND NOT EXISTS
       (SELECT 1 FROM point_input i JOIN point_input b ON b.point_id = a.base_point_id AND b.path = i.path
         JOIN point_input n ON n.point_id = a.point_id AND n.path = i.path
-        WHERE i.point_id = l.point_id AND i.value <> b.value AND i.value <> n.value))
-  GROUP BY a.base_point_id, a.point_id, a.results_version, a.quantity, a.named),
-of_point AS (SELECT point_id, results_version, quantity, error, diverges, open FROM of_study WHERE NOT named
+        WHERE i.point_id = l.point_id AND i.value <> b.value AND i.value <> n.value))),
+of_named AS (SELECT base_point_id, point_id, results_version, quantity, sum(error) AS error, max(diverges) AS diverges,
+    max(open) AS open FROM of_study WHERE named GROUP BY base_point_id, point_id, results_version, quantity),
+of_point AS (SELECT point_id, results_version, quantity, sum(error) AS error, max(diverges) AS diverges,
+    max(open) AS open
+  FROM (SELECT point_id, results_version, quantity, knob, max(error) AS error, max(diverges) AS diverges,
+      max(open) AS open
+    FROM (SELECT point_id, results_version, quantity, knob, error, diverges, open FROM of_study WHERE NOT named
+      UNION ALL SELECT point_id, results_version, quantity, knob, error, false, open FROM of_kin)
+    GROUP BY point_id, results_version, quantity, knob)
+  GROUP BY point_id, results_version, quantity
   UNION ALL SELECT s.point_id, s.results_version, s.quantity, abs(s.bias) + s.bias_half_width + r.error, r.diverges,
-    r.open FROM convergence s JOIN of_study r USING (base_point_id, results_version, quantity)
-  WHERE r.named AND s.knob = 'settings' AND NOT s.base),
+    r.open FROM convergence s JOIN of_named r USING (base_point_id, results_version, quantity)
+  WHERE s.knob = 'settings' AND NOT s.base),
 largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max(diverges) AS diverges,
     max(open) AS open, iif(quantity IN (SELECT quantity FROM share), coalesce((SELECT max(r.mean, 1 - r.mean)
       FROM convergence c JOIN convergence r USING (base_point_id, results_version, quantity, knob)

@@ -149,12 +149,6 @@ static struct own_knob own_of(const struct finding *finding, const char *knob) {
   return (struct own_knob){.resolution = NAN};
 }
 
-/* A level's error: that of the store, or its own knob's and what the scene's own settings leave of all others. */
-static double error_of_level(const struct finding *finding, const struct convergence_row *row) {
-  const double all = row->resolution + finding->own_error - own_of(finding, row->knob).resolution; /* NaN: not known */
-  return all > row->error * (1 + 1e-9) ? all : row->error; /* the same sum in another order is no larger error */
-}
-
 /* What more seeds of this study leave of a level's error: the middles of its knobs, and all of other studies. */
 static double left_of_level(const struct finding *finding, const struct convergence_row *row) {
   return (row->resolution > 0 ? middle_of(row) : 0) + finding->own_middle - own_of(finding, row->knob).middle +
@@ -376,11 +370,10 @@ static status take_option(struct finding *finding, const struct convergence_row 
   if (there || (marked && !row->base))
     return STATUS_OK;
 
-  const double most = most_of(finding->row && field_is_share(finding->row), row->n ? row->mean : finding->finest.mean);
   struct accuracy_option option = {.own = row->base,
                                    .extrapolated = extrapolated,
                                    .open = row->at_least,
-                                   .error = fmax(row->error, fmin(error_of_level(finding, row), most)),
+                                   .error = row->error,
                                    .run_s = row->cpu};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
   if (!extrapolated)

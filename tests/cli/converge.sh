@@ -559,6 +559,22 @@ db.commit()
 PY
 expect 0 "$clast" stats each.db
 says "no limit is seen at 1 of 2 points; the largest error is at least 0.0"
+# A study with another time step has the error of that step, too, from the study that had it as a level.
+printf 'name: steps\nscene: disc-explosion\nset: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}\nstore: steps.db\n' >steps.yaml
+expect 0 "$clast" converge steps.yaml --knob grains=0.015m,0.012m,0.01m --knob time_step=2us,1us,0.5us -Q dust_fraction --seeds 4 --within off -j 2
+expect 0 "$clast" converge steps.yaml --set fidelity.time_step=2us --knob grains=0.015m,0.012m,0.01m -Q dust_fraction --seeds 4 --within off -j 2
+python - <<'PY'
+import sqlite3
+db = sqlite3.connect("steps.db")
+(first,), (second,) = db.execute("select distinct base_point_id from convergence order by 1")
+step, = db.execute("select resolution from convergence where base_point_id = ? and knob = 'time_step' and setting + 0 = 2e-6", [first]).fetchone()
+rows = db.execute("select c.resolution, r.half_width, max(c.mean, 1 - c.mean) from convergence c join resolution r using (point_id, quantity) "
+                  "where base_point_id = ? and not base and n > 0", [second]).fetchall()
+assert step > 0 and len(rows) == 3, (step, rows)
+for grains, whole, most in rows:
+    assert abs(min(grains + step, most) - whole) < 1e-12, (grains, step, whole, most)
+PY
+ok "errors of the knobs of two studies"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 ! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
@@ -576,4 +592,4 @@ expect 65 "$clast" converge bad.yaml --list
 says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 146
+done_after 149
