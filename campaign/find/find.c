@@ -237,7 +237,8 @@ static void clear(struct find *find) {
 
 /* ---- a round as a campaign ---- */
 
-/* The next round's places, each once: whole numbers and six digits may meet. */
+/* The next round's places, each once: whole numbers and six digits may meet; and its runs at each, fewer in a last
+ * round that the rest of the runs cannot fill. None left: 0. */
 static void choose_places(struct find *find) {
   double next[CROSSING_FIRST];
   size_t count = CROSSING_FIRST;
@@ -254,6 +255,8 @@ static void choose_places(struct find *find) {
     find_value(find, next[i], value);
     find->places += find->places == 0 || field_number(value) != field_number(value - 1);
   }
+  const size_t rest = (find->most - find->runs) / find->places;
+  find->each = find->each < rest ? find->each : rest;
 }
 
 void find_name(const struct find *find, char *name, size_t size) {
@@ -279,7 +282,7 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
   if (find->answered)
     return STATUS_OK;
   choose_places(find);
-  find->answered = find->runs + find->places * find->each > find->most;
+  find->answered = find->each == 0;
   return find->answered ? STATUS_OK : make_campaign(find, campaign, error);
 }
 
@@ -362,7 +365,7 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   if (launch.manager && !launch.notes.quiet)
     fprintf(stderr,
             "clast: at most %zu runs, %d at first; --plan tells what they cost. They are campaigns of their own in "
-            "%s; questions about other campaigns leave them out\n",
+            "%s; questions leave out points that only these campaigns have\n",
             find->most, FIND_FEWEST_RUNS, find->limits.store);
   const status code = launch_series(&launch, &series, true, error);
   if (!launch.manager || code != STATUS_OK)
@@ -405,7 +408,7 @@ static status follow_store(struct find *find, struct error *error) {
     TRY(add_round(find, store, error));
     if (!find->answered)
       choose_places(find);
-    if (find->answered || find->runs + find->places * find->each > find->most) {
+    if (find->answered || find->each == 0) {
       *find = last;
       find->answered = true;
       return STATUS_OK;

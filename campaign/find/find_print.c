@@ -297,10 +297,16 @@ static status tell_resolution(const struct find *find, struct error *error) {
   return STATUS_OK;
 }
 
-/* The runs are used up: how many more an interval of the width asked for needs, and whether the last ones helped. */
+/* The runs do not suffice: how many more an interval of the width asked for needs, and whether the last ones helped. */
 static void write_more(const struct find *find) {
   const double width = find->found.high - find->found.low;
-  char text[SENTENCE] = "The interval is wider than asked, and the runs are used up: a larger --max-runs goes on.";
+  char text[SENTENCE] = "";
+  if (find->runs < find->most)
+    text_append(text, SENTENCE, "The interval is wider than asked, and no round fits into the rest of the %zu runs",
+                find->most);
+  else
+    text_append(text, SENTENCE, "The interval is wider than asked, and the runs are used up");
+  text_append(text, SENTENCE, ": a larger --max-runs goes on.");
   const struct find_width *before = NULL;
   for (size_t i = 0; i < find->widths; i++)
     if (2 * find->width[i].runs <= find->runs)
@@ -332,8 +338,8 @@ static status tell_others(const struct find *find, struct error *error) {
   const int64_t others = runs - (int64_t)find->runs; /* failed runs count as ours */
   if (others > 0)
     words_print(stderr, "",
-                "clast: %lld other runs at places of %s are left out: a search uses the runs at its own places "
-                "and seeds alone, so that it answers the same whatever the store has",
+                "clast: %lld other runs at places of searches along %s are left out: a search uses the runs at its own "
+                "places and seeds alone, so that it answers the same whatever the store has",
                 (long long)others, find->input->path);
   return STATUS_OK;
 }
