@@ -6,6 +6,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef _OPENMP
+#include <omp.h>
+#else
+#define omp_get_thread_num()  0
+#define omp_get_max_threads() 1
+#endif
+
 enum { THREADS_MOST = 1024 };
 
 /* The number of threads, the calling one included, that its parallel loops can have now: `wanted`, or fewer if

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include "engine/random.h"
 #include "engine/threads.h"
@@ -624,11 +621,7 @@ static size_t count_larger(const struct windows *windows, double beta, double di
 static void bootstrap(const struct windows *windows, double beta, size_t draws, struct pooled_goodness *out,
                       bool *failed) {
   size_t larger = 0;
-#ifdef _OPENMP
   const int threads = threads_granted(omp_get_max_threads());
-#else
-  const int threads = 1;
-#endif
   while (out->draws < draws && larger < ENOUGH && !*failed) {
     const size_t to = out->draws + BATCH < draws ? out->draws + BATCH : draws;
     larger += count_larger(windows, beta, out->distance, out->draws, to, threads, failed);

@@ -186,14 +186,10 @@ static bool contact_touch(struct sph_system *s) {
     contact_measure_room(s, f);
   if (!grow_room(&s->touch, &s->touch_capacity, f->count, sizeof *s->touch))
     return false;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t row = 0; row < f->count; row++)
     contact_press(s, f, row);
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t row = 0; row < f->count; row++)
     contact_push(s, f, row);
   s->now.contact = 0;

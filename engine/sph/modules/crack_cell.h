@@ -104,9 +104,7 @@ static void crack_cell_average_stress(struct sph_system *s, const struct sph_sol
   struct crack_cells *c = body->prepared[SPH_MODULE_crack_cell];
   for (size_t i = body->first; i < body->last; i++)
     c->index[s->id[i] - body->first] = (uint32_t)i;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t k = 0; k < c->count; k++)
     crack_cell_average(s, c, k);
 }

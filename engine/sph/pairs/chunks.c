@@ -323,14 +323,10 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
   bool enough = true;
   if (code)
     return code;
-#ifdef _OPENMP
 #pragma omp parallel num_threads(threads) if (threads > 1) reduction(&& : enough)
-#endif
   {
     struct sph_neighbour_lists scratch = {0};
-#ifdef _OPENMP
 #pragma omp for schedule(dynamic, 1)
-#endif
     for (size_t k = 0; k < s->count; k++)
       enough = list_chunk(s, k, n, body, &scratch) && enough;
     free(scratch.j);

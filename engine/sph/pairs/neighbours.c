@@ -208,9 +208,7 @@ status sph_neighbours_find(struct sph_neighbours *s, size_t n, const double *x, 
   s->chunks = (n + s->chunk - 1) / s->chunk;
   TRY(check_periods(s, reach, n, periodic, error));
   (void)threads;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
-#endif
   for (size_t k = 0; k < s->chunks; k++) {
     const size_t last = (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n;
     s->chunk_node[k + 1] = (count_leaves(s, k * s->chunk, last) + BOXES - 1) / BOXES;
@@ -232,9 +230,7 @@ status sph_neighbours_find(struct sph_neighbours *s, size_t n, const double *x, 
     return status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
   s->particles.first = s->leaf_first;
   s->particles.size = s->leaf_size;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
-#endif
   for (size_t k = 0; k < s->chunks; k++)
     make_leaves(s, k, (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n);
   for (size_t level = 1; level < s->levels; level++)

@@ -16,9 +16,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 #ifdef __SSE__
 #include <xmmintrin.h>
 #endif
@@ -27,6 +24,7 @@
 #include "engine/grow.h"
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
+#include "engine/threads.h"
 #include "schemas/memory.h"
 
 enum { PAD = 7 }; /* neighbours.c reads so many elements beyond the end */
@@ -223,12 +221,10 @@ double *const *sph_pairs_listed(struct sph_pairs *p) {
 
 status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
   double *const *at = p->listed, least = INFINITY, widest = 0;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) reduction(min                                                                \
                                                     : least) reduction(max                                             \
                                                                        : widest)                                       \
     num_threads((int)p->threads) if (p->threads > 1)
-#endif
   for (size_t i = 0; i < p->n; i++) {
     p->reach[i] = at[3][i] + at[4][i];
     if (at[3][i] > 0 && at[3][i] < least)
@@ -608,9 +604,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
   if (!p->units_chosen)
     choose_units(p, n, f);
   struct pass w = {.pairs = p, .fields = f, .constants = constants_of(p), .take = take, .context = context};
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)p->threads) if (p->threads > 1)
-#endif
   for (size_t k = 0; k < p->lists.count; k++) {
     struct sph_chunk *c = &p->lists.chunk[k];
     atomic_init(&c->summed, false);
@@ -625,11 +619,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
     move_apart(p, w.source.column[PAIR_X + p->apart_axis]);
     w.source.column[PAIR_X + p->apart_axis] = p->apart;
   }
-#ifdef _OPENMP
 #pragma omp parallel num_threads((int)p->threads) if (p->threads > 1)
   take_turns(&w, (size_t)omp_get_thread_num());
-#else
-  take_turns(&w, 0);
-#endif
   p->within = 2 * w.within;
 }

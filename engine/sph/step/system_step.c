@@ -14,12 +14,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include "engine/sph/body/kd_tree.h"
 #include "engine/sph/step/system.h"
+#include "engine/threads.h"
 
 /* Sorting particles and making new neighbour lists. */
 
@@ -46,15 +44,9 @@ static bool permute(struct sph_system *s) {
     snprintf(s->failure, sizeof s->failure, "no memory to sort %zu particles", s->n);
     return false;
   }
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t k = 0; k < columns; k++) {
-#ifdef _OPENMP
     double *scratch = room + (size_t)omp_get_thread_num() * s->n;
-#else
-    double *scratch = room;
-#endif
     double *column = all[k];
     for (size_t i = 0; i < s->n; i++)
       scratch[i] = column[s->order[i]];
@@ -96,9 +88,7 @@ static void wrap(struct sph_system *s) {
   const double *length = s->domain.periodic;
   if (!(length[0] > 0 || length[1] > 0 || length[2] > 0))
     return;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t i = 0; i < s->n; i++) {
     s->c.x[i] = sph_system_columns_wrapped(s->c.x[i], length[0]);
     s->c.y[i] = sph_system_columns_wrapped(s->c.y[i], length[1]);
@@ -126,9 +116,7 @@ static bool list_anew(struct sph_system *s) {
   const double skin = s->in.fidelity.skin, horizon = (double)s->now.horizon * s->dt;
   const double reach = sph_system_step_reach(&s->domain);
   double *const *listed = sph_pairs_listed(s->pairs);
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
     block->swollen = 0;
@@ -228,9 +216,7 @@ static void before_pairs(struct sph_system *s) {
   bool meets = false;
   for (size_t b = 0; b < s->body_count; b++)
     meets = meets || s->solid[b].meet;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t k = 0; k < s->block_count; k++)
     run_before(s, &s->block[k], true, !meets);
   if (!meets)
@@ -238,9 +224,7 @@ static void before_pairs(struct sph_system *s) {
   for (size_t b = 0; b < s->body_count; b++)
     if (s->solid[b].meet)
       s->solid[b].meet(s, &s->solid[b]);
-#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
-#endif
   for (size_t k = 0; k < s->block_count; k++)
     run_before(s, &s->block[k], false, true);
 }
