@@ -1,6 +1,5 @@
 /* SQLite with our errors: every failure becomes a status and sentences with a remedy. For db/ only. */
-#ifndef CLAST_DB_SQL_H
-#define CLAST_DB_SQL_H
+#pragma once
 
 #include <sqlite3.h>
 #include <stdarg.h>
@@ -111,5 +110,3 @@ int sql_bind_fields(sqlite3_stmt *statement, int at, const struct field_table *f
 
 /* STRICT type of a row's column. */
 const char *sql_type(const struct field *row);
-
-#endif

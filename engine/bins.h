@@ -1,7 +1,6 @@
 /* Logarithmic bins of masses and speeds, the same for every scene, so that bins of different runs, points and stores
  * add up. Bin k covers [10^(k/n), 10^((k+1)/n)) with n = BINS_PER_DECADE, in kg or m/s. */
-#ifndef CLAST_ENGINE_BINS_H
-#define CLAST_ENGINE_BINS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -12,5 +11,3 @@ double bins_edge(int bin);
 /* The bin whose [edge, next edge) holds the value: exact against bins_edge() for every double (0.001 is in bin -30, the
  * double before it in bin -31). BINS_NONE for zero, negative, infinite and NaN values. */
 int bins_of(double value);
-
-#endif

@@ -1,7 +1,6 @@
 /* Documents that are compiled into the program, written by engine/embed_documents.cmake at build time: the scenes of
  * engine/<engine>/scene/builtin/ and the materials of engine/<engine>/material/builtin/. */
-#ifndef CLAST_ENGINE_BUILTIN_H
-#define CLAST_ENGINE_BUILTIN_H
+#pragma once
 
 #include <string.h>
 
@@ -19,5 +18,3 @@ static inline const char *builtin_text(const struct builtin_document *list, cons
     list++;
   return list->text;
 }
-
-#endif

@@ -2,11 +2,9 @@
  * number with a bound, before the run from the inputs, at the end from the run itself, or both. A run beyond a bound is
  * marked with the condition's word in its result `warnings`; it stays in every mean. What the program says before a
  * run, the marks beside numbers and `clast explain conditions` follow from these rows. */
-#ifndef CLAST_ENGINE_CONDITION_H
-#define CLAST_ENGINE_CONDITION_H
+#pragma once
 
 #include <stdbool.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "engine/outcome.h"
@@ -97,5 +95,3 @@ void condition_sentence(const struct condition *condition, FILE *out);
 
 /* The first row of a word in a list; NULL when there is none. */
 const struct condition *condition_find(const struct condition *list, const char *word);
-
-#endif

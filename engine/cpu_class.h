@@ -4,8 +4,7 @@
  * Results are bit-identical only within one class, because contraction to FMA differs. So a run records its class. The
  * environment variable CLAST_CPU=baseline|v3|v4 limits the class. A class that the machine lacks is replaced by the
  * best one below it. */
-#ifndef CLAST_ENGINE_CPU_CLASS_H
-#define CLAST_ENGINE_CPU_CLASS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -21,6 +20,4 @@ const char *cpu_class_name(enum cpu_class class); /* "baseline", "v3", "v4" */
   (cpu_class_choose() == CPU_V4 ? &stem##_v4 : cpu_class_choose() == CPU_V3 ? &stem##_v3 : &stem##_baseline)
 #else
 #define CPU_CLASS_OF(stem) (&stem##_baseline)
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 /* Mass and momentum of the ejecta of an impact over their speed: rows of table ejecta. */
-#ifndef CLAST_ENGINE_EJECTA_H
-#define CLAST_ENGINE_EJECTA_H
+#pragma once
 
 /* The bins of engine/bins.h from 1e-6 to 1e6 m/s. Slower matter is in the first of them, faster in the last. */
 enum { EJECTA_FIRST = -60, EJECTA_BINS = 120 };
@@ -16,5 +15,3 @@ struct ejecta {
 void ejecta_add(struct ejecta *ejecta, double speed, double mass, double momentum);
 /* Makes each bin the sum of itself and of all faster ones: mass and momentum above the bin's lower edge. */
 void ejecta_sum(struct ejecta *ejecta);
-
-#endif

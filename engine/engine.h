@@ -1,8 +1,7 @@
 /* An engine is a descriptor: scene in, result out, no MPI, no SQLite, no printing, no exit().
  *
  * A run is a pure function of (typed inputs, seed, results_version): the same bits on any rank, in any order. */
-#ifndef CLAST_ENGINE_ENGINE_H
-#define CLAST_ENGINE_ENGINE_H
+#pragma once
 
 #include "engine/condition.h"
 #include "engine/ejecta.h"
@@ -159,5 +158,3 @@ const struct field *engine_ejecta_sum(void);
 const struct engine_kind *engine_find(const char *name, struct error *error);
 /* NULL + STATUS_USAGE with the known names of this engine. */
 const struct knob *engine_knob(const struct engine_kind *kind, const char *name, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Fragments: connected components of grains or particles joined by intact links. Pure functions: an engine calls them
  * at the end of a run; analysis may call them again on a snapshot. */
-#ifndef CLAST_ENGINE_FRAGMENTS_H
-#define CLAST_ENGINE_FRAGMENTS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -52,5 +51,3 @@ void fragments_principal(const double tensor[6], double value[3], double axis[3]
 uint32_t fragments_root(uint32_t *parent, uint32_t i);
 /* Joins two sets. True when a and b were in different ones. */
 bool fragments_join(uint32_t *parent, uint32_t a, uint32_t b);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the runs of all engines have in common: the state that says how a run goes, its loop of steps, the look at its
  * energy, and its end. The run of an engine begins with a struct frame, its state with a struct frame_state. */
-#ifndef CLAST_ENGINE_FRAME_H
-#define CLAST_ENGINE_FRAME_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -71,5 +70,3 @@ void frame_look(struct frame *frame);
 
 /* The outcome as far as it follows from the state; a run that is not finished gives results of a snapshot. */
 struct outcome frame_outcome(const struct frame *frame, double time_step);
-
-#endif

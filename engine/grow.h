@@ -1,7 +1,6 @@
 /* Growing arrays. The capacity doubles, so adding an item takes constant time on average.
  */
-#ifndef CLAST_ENGINE_GROW_H
-#define CLAST_ENGINE_GROW_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,5 +23,3 @@ status grow_or_fail(void *array, size_t *room, size_t need, size_t item, const c
  * that kernels may read beyond the end. The first `keep` items are kept. */
 enum { GROW_SPARE = 64 };
 bool grow_aligned(void *array, size_t *room, size_t need, size_t item, size_t keep);
-
-#endif

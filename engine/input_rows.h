@@ -1,7 +1,6 @@
 /* Short forms of rows of inputs whose path is that of the member. The including file defines INPUTS, the name of the
  * struct. */
-#ifndef CLAST_ENGINE_INPUT_ROWS_H
-#define CLAST_ENGINE_INPUT_ROWS_H
+#pragma once
 
 #include "schemas/rows.h"
 
@@ -11,5 +10,3 @@
   ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low_, .maximum = high_, __VA_ARGS__)
 #define SWITCH(path_, ...) INPUT_SWITCH(path_, path_, __VA_ARGS__)
 #define CHOICE(path_, ...) INPUT_CHOICE(path_, path_, __VA_ARGS__)
-
-#endif

@@ -1,6 +1,5 @@
 /* The results of a finished run that every engine reports: columns of table `run`. */
-#ifndef CLAST_ENGINE_OUTCOME_H
-#define CLAST_ENGINE_OUTCOME_H
+#pragma once
 
 #include "engine/fragments.h"
 #include "schemas/field.h"
@@ -63,5 +62,3 @@ struct outcome_small {
 /* Fill the rows that follow from the fragments alone (by descending mass): total mass, counts, fractions, moments. */
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments,
                        const struct outcome_small *small);
-
-#endif

@@ -1,7 +1,6 @@
 /* Counter-based random numbers (Random123 Philox4x64-10): a draw depends on (seed, purpose, item, draw) alone, never on
  * order, threads or restarts. A test compares known-answer vectors. */
-#ifndef CLAST_ENGINE_RANDOM_H
-#define CLAST_ENGINE_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ double random_uniform(uint64_t bits);
 double random_draw(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw);
 /* Uniform over rotations [Shoemake 1992]. */
 void random_rotation(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, double matrix[3][3]);
-
-#endif

@@ -5,8 +5,7 @@
  * inputs), u64 number of parts, each u64 size + bytes, u64 FNV-1a of all before it.
  *
  * Parts: the run's state (a plain value), its samples, its moving system. */
-#ifndef CLAST_ENGINE_RESTART_H
-#define CLAST_ENGINE_RESTART_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -33,5 +32,3 @@ status restart_load(const struct engine_kind *kind, const void *inputs, const ch
 
 /* Reads only the seed from a restart file. STATUS_MISSING, STATUS_IO; STATUS_CONTENT: not a restart file. */
 status restart_peek(const char *path, uint64_t *seed, struct error *error);
-
-#endif

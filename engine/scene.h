@@ -1,8 +1,7 @@
 /* A scene: which engine, and its typed inputs. Built-in scenes are documents with their sources, kept in
  * engine/<engine>/scene/builtin/ and compiled into the program. `clast scenes NAME` prints one, as a start for a new
  * scene. */
-#ifndef CLAST_ENGINE_SCENE_H
-#define CLAST_ENGINE_SCENE_H
+#pragma once
 
 #include "engine/engine.h"
 #include "engine/mesh/mesh.h"
@@ -91,5 +90,3 @@ char *scene_json(const struct scene *scene); /* resolved: engine, name and every
 /* 128-bit identity of a run: hash of engine, results_version, seed and sorted active inputs as %a, without those at
  * their value of absence (field.h, .absent). */
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * The file is made in memory and written whole: a full disk or a forbidden folder is one clean error. Calls between
  * open and save return nothing: save reports errors of HDF5. */
-#ifndef CLAST_ENGINE_SNAPSHOT_FILE_H
-#define CLAST_ENGINE_SNAPSHOT_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -67,5 +66,3 @@ void snapshot_file_columns(struct snapshot_file *file, const char *group, size_t
 
 /* The head of a VTKHDF 1.0 unstructured grid: version, type, counts. The other data sets are written under VTKHDF/. */
 void snapshot_file_vtk(struct snapshot_file *file, size_t points, size_t cells, size_t connectivity);
-
-#endif

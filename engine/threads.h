@@ -1,7 +1,6 @@
 /* Threads that the system grants. OpenMP ends the process when the system refuses a thread that it asks for, so a loop
  * asks here first how many it may have. Results do not depend on the number. */
-#ifndef CLAST_ENGINE_THREADS_H
-#define CLAST_ENGINE_THREADS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -22,5 +21,3 @@ int threads_granted(int64_t wanted);
 
 /* Address space that `count` threads beside the calling one take for their stacks, bytes. */
 size_t threads_stacks(int64_t count);
-
-#endif

@@ -1,7 +1,6 @@
 /* Vectors of three components, for the geometry of shapes and meshes. The order of the sums affects the bits of
  * results. */
-#ifndef CLAST_ENGINE_VECTOR3_H
-#define CLAST_ENGINE_VECTOR3_H
+#pragma once
 
 #include <math.h>
 
@@ -32,5 +31,3 @@ static inline double vector3_unit(const double a[3], double out[3]) {
     out[k] = scaled[k] / length;
   return length * largest;
 }
-
-#endif

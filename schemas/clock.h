@@ -1,6 +1,5 @@
 /* The one monotonic clock, for durations and deadlines, and the CPU seconds of this process. */
-#ifndef CLAST_SCHEMAS_CLOCK_H
-#define CLAST_SCHEMAS_CLOCK_H
+#pragma once
 
 #include <stdint.h>
 #include <sys/resource.h>
@@ -42,5 +41,3 @@ static inline double clock_cpu_with_children_s(void) {
 static inline int64_t clock_from_s(double seconds) {
   return seconds > 1e9 ? (int64_t)1e18 : (int64_t)(seconds * 1e9);
 }
-
-#endif

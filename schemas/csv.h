@@ -10,8 +10,7 @@
  *
  * A first line that begins with eval_id or %eval_id is that of a tabular file of Dakota in its annotated form: its
  * cells are separated by blanks. */
-#ifndef CLAST_SCHEMAS_CSV_H
-#define CLAST_SCHEMAS_CSV_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -65,5 +64,3 @@ const char *csv_take_unit(char *name);
 
 /* Gives a number, which a unit may follow, a decimal point. False: its marks can mean two things; `wrong` says why. */
 bool csv_number(struct csv *csv, struct csv_cell *cell);
-
-#endif

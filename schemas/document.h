@@ -8,8 +8,7 @@
  * dimension.
  *
  * Opaque over libfyaml: no other folder includes <libfyaml.h>. */
-#ifndef CLAST_SCHEMAS_DOCUMENT_H
-#define CLAST_SCHEMAS_DOCUMENT_H
+#pragma once
 
 #include "schemas/field.h"
 
@@ -94,5 +93,3 @@ void document_unknown_keys(document_node *mapping, const char *path, const char 
 status document_finish(struct document *document, const char **report);
 /* The same with the report as the message of *error. */
 status document_verdict(struct document *document, struct error *error);
-
-#endif

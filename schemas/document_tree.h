@@ -1,6 +1,5 @@
 /* The inside of a document, shared by the document_*.c files only. */
-#ifndef CLAST_SCHEMAS_DOCUMENT_TREE_H
-#define CLAST_SCHEMAS_DOCUMENT_TREE_H
+#pragma once
 
 #include "schemas/document.h"
 
@@ -81,5 +80,3 @@ const char *document_value_path(const document_node *node, char *path, size_t si
 /* The kind of a node in words, for messages: "a list", "nothing", "keys and values". */
 const char *document_value_what(const document_node *node);
 bool document_value_is_null(const document_node *node); /* a plain scalar that the core schema calls null */
-
-#endif

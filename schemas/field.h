@@ -7,8 +7,7 @@
  * Paths are dotted ("grain.young_modulus"); a YAML document nests them as mappings. Values inside a struct are SI. C
  * types by kind: FIELD_REAL double, FIELD_INTEGER int64_t, FIELD_BOOLEAN bool, FIELD_CHOICE int (index into choices),
  * FIELD_TEXT char[FIELD_TEXT_SIZE] (inline, so that a struct is copied by assignment). */
-#ifndef CLAST_SCHEMAS_FIELD_H
-#define CLAST_SCHEMAS_FIELD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -241,5 +240,3 @@ size_t field_encode(const struct field_table *table, const void *object, uint8_t
 /* Returns the number of bytes read; 0 when they are truncated or from another table. Members without a row do not
  * change. */
 size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object);
-
-#endif

@@ -11,8 +11,7 @@
  *   - the fields of a stored run: STORE-fields/<identity>.h5,
  *   - a file that this command reads, under any of its names; file_input() knows them,
  *   - a document: a file with the ending .yaml, .yml or .json that is not the JSON Lines of an export. */
-#ifndef CLAST_SCHEMAS_FILE_H
-#define CLAST_SCHEMAS_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -64,5 +63,3 @@ bool file_name_is_document(const char *word);
 /* Joins a folder and a file name; malloc'd, NULL without memory. An absolute name does not change, nor does any name
  * when `folder` is NULL or empty (the current folder). */
 char *file_name_in(const char *folder, const char *name);
-
-#endif

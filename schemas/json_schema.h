@@ -1,8 +1,7 @@
 /* JSON Schema (draft-07) of a field table, for editors (yaml-language-server) and for the test that compares an
  * independent validator with our reader on the same documents. `clast schema` prints it. The committed copies in
  * schemas/ are written by the build target schemas, and a test compares them. */
-#ifndef CLAST_SCHEMAS_JSON_SCHEMA_H
-#define CLAST_SCHEMAS_JSON_SCHEMA_H
+#pragma once
 
 #include <stdio.h>
 
@@ -17,5 +16,3 @@ int json_schema_required(const struct field_table *table, FILE *out);
  * "\"name\": {\"type\": \"string\"}"; `extra_required` (may be NULL) one of them that is required. */
 void json_schema_write(const struct field_table *table, const char *title, const char *extra,
                        const char *extra_required, FILE *out);
-
-#endif

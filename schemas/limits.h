@@ -1,7 +1,6 @@
 /* Fixed limits that files of several folders share, with the reason of each. A limit of one file stands in that file.
  */
-#ifndef CLAST_SCHEMAS_LIMITS_H
-#define CLAST_SCHEMAS_LIMITS_H
+#pragma once
 
 enum {
   /* Bytes of a path with its NUL: PATH_MAX of Linux, whose calls refuse a longer one. */
@@ -27,5 +26,3 @@ enum {
   LIMITS_STUDY_QUANTITIES = 8,
   LIMITS_STUDY_KNOBS = 32,
 };
-
-#endif

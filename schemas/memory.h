@@ -2,8 +2,7 @@
  * with the exit code STATUS_MEMORY; the farm counts such a run as lost and tries it again, and a store survives the end
  * of any process. So the caller checks nothing. Whatever grows with a file, a store or the particles of a scene uses
  * memory_array() or malloc(), and returns STATUS_MEMORY instead. */
-#ifndef CLAST_SCHEMAS_MEMORY_H
-#define CLAST_SCHEMAS_MEMORY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -24,5 +23,3 @@ status memory_array(void *pointer, size_t count, size_t size, const char *what, 
 void memory_free(void *pointer); /* for OWNED: frees what the pointer at this address points to */
 /* Ends the process as above, where memory that constants bound was refused elsewhere. */
 void memory_refused(void) __attribute__((noreturn));
-
-#endif

@@ -2,8 +2,7 @@
  * field (.doc, .when). A file that uses the forms for inputs and results defines INPUTS and RESULTS, the structs'
  * names.
  */
-#ifndef CLAST_SCHEMAS_ROWS_H
-#define CLAST_SCHEMAS_ROWS_H
+#pragma once
 
 #include <math.h>
 
@@ -27,5 +26,3 @@
   REAL_OF(RESULTS, path_, member_, "1", NAN, 0, 1, .flags = FIELD_MAY_BE_OFF, __VA_ARGS__)
 #define RESULT_COUNT(path_, member_, ...)                                                                              \
   ROW_OF(RESULTS, path_, member_, FIELD_INTEGER, "1", .maximum = HUGE_VAL, __VA_ARGS__)
-
-#endif

@@ -2,8 +2,7 @@
  *
  * The values are the process exit codes (BSD sysexits), so main() returns a status unchanged. Nothing below main()
  * prints or exits; it returns a status and says in `struct error` what happened, where, and what to do. */
-#ifndef CLAST_SCHEMAS_STATUS_H
-#define CLAST_SCHEMAS_STATUS_H
+#pragma once
 
 #include "schemas/limits.h"
 
@@ -50,5 +49,3 @@ const char *status_meaning(status code);
     if (try_status)                                                                                                    \
       return try_status;                                                                                               \
   } while (0)
-
-#endif

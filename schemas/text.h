@@ -1,7 +1,6 @@
 /* Small tools for text that every folder needs: UTF-8, JSON strings, wrapped paragraphs, a hash, and the guess for
  * every "did you mean". */
-#ifndef CLAST_SCHEMAS_TEXT_H
-#define CLAST_SCHEMAS_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -124,5 +123,3 @@ void text_guess_offer(struct text_guess *guess, const char *name);
 /* Offers `name`, compared by the part of it that begins at `part`. A part costs half an edit, so that a whole name is
  * preferred to an equally near part. */
 void text_guess_offer_part(struct text_guess *guess, const char *part, const char *name);
-
-#endif

@@ -1,7 +1,6 @@
 /* Units: text such as "km/s", "kg/m^3", "dyn/cm^2", "deg", "%" converted to a factor to SI and a dimension, once, when
  * a document is read. All later values are doubles in SI. */
-#ifndef CLAST_SCHEMAS_UNIT_H
-#define CLAST_SCHEMAS_UNIT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ status unit_read_whole(const char *text, const char *expected_unit, double *si, 
 
 /* The part of such a text that is its unit: "km/s" in "5 km/s"; "" without a unit or a number. */
 const char *unit_of(const char *text);
-
-#endif

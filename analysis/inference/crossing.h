@@ -8,8 +8,7 @@
  *
  *     crossing_find(&data, &found, &error);
  *     crossing_next(&found, runs, places);      // until found.high - found.low is small enough */
-#ifndef CLAST_ANALYSIS_INFERENCE_CROSSING_H
-#define CLAST_ANALYSIS_INFERENCE_CROSSING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -72,5 +71,3 @@ size_t crossing_runs_for(size_t runs, double width, double within);
 
 /* Is this an answer? A crossing is one if its interval is at most this wide. */
 bool crossing_is_answer(const struct crossing *found, double within);
-
-#endif

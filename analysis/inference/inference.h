@@ -5,8 +5,7 @@
  * inputs is known without a run: the posterior, and the directions of inputs that the data determine.
  *
  * Inputs are in normal coordinates z: the prior of each is the standard normal law. Call analysis_init() first. */
-#ifndef CLAST_ANALYSIS_INFERENCE_INFERENCE_H
-#define CLAST_ANALYSIS_INFERENCE_INFERENCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -249,5 +248,3 @@ void covariance_inverse(size_t n, const double *factor, double *inverse);
  */
 enum { COVARIANCE_MOST = 32 };
 void covariance_eigen(size_t n, const double *matrix, double *values, double *vectors);
-
-#endif

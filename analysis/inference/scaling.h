@@ -25,8 +25,7 @@
  * The half width is the root of the sum of squares of that and of the scatter over whole runs: weights from an
  * exponential law for each seed of a size (Rubin 1981, doi 10.1214/aos/1176345338), Student's t for few seeds.
  * Corrections that fall more slowly than 1/L may be larger. Measured: tests/verification/scaling.md. */
-#ifndef CLAST_ANALYSIS_INFERENCE_SCALING_H
-#define CLAST_ANALYSIS_INFERENCE_SCALING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -93,5 +92,3 @@ status scaling_find(size_t n, const struct scaling_run *runs, int dimensions, st
 
 void scaling_release(struct scaling *scaling);
 #define SCALING __attribute__((cleanup(scaling_release))) struct scaling
-
-#endif

@@ -4,8 +4,7 @@
  * replaces them. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
  * separate folder, where gnuplot runs. The script holds text from users, such as the names of campaigns, only as quoted
  * strings that gnuplot does not interpret, and it names only files of that folder. */
-#ifndef CLAST_ANALYSIS_PICTURES_CHART_H
-#define CLAST_ANALYSIS_PICTURES_CHART_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -61,5 +60,3 @@ struct chart_template {
   const char *name, *text;
 };
 extern const struct chart_template chart_templates[];
-
-#endif

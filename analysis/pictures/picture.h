@@ -5,8 +5,7 @@
  * Errors of all functions: STATUS_USAGE for another ending and when there is nothing to draw, STATUS_IO when the file
  * cannot be written, STATUS_MEMORY; for charts also STATUS_MISSING when gnuplot is not installed. Arrays are borrowed.
  * width: pixels (PNG) or points (SVG, PDF), 200 to 8000. title: NULL for none. */
-#ifndef CLAST_ANALYSIS_PICTURES_PICTURE_H
-#define CLAST_ANALYSIS_PICTURES_PICTURE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -286,5 +285,3 @@ struct picture_prediction {
 /* Draws all numbers divided by their measured values, one row each. A measured value of 0 is left out. */
 status picture_predicted(const struct picture_page *page, const struct picture_words *words, size_t count,
                          const struct picture_prediction *row, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Shared parts of all pictures: the file, text, colours, round lengths. For the picture_*.c files only. */
-#ifndef CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
-#define CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
+#pragma once
 
 #include <cairo.h>
 #include <stdbool.h>
@@ -62,5 +61,3 @@ struct picture_sheet {
 };
 /* Begins the next picture: its caption, and the title before the first. Then as picture_canvas_place(). */
 double picture_sheet_next(struct picture_sheet *sheet, const char *title, const char *caption);
-
-#endif

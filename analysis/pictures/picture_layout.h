@@ -1,6 +1,5 @@
 /* Places fragments side by side in a picture, so that none hides another. */
-#ifndef CLAST_ANALYSIS_PICTURES_PICTURE_LAYOUT_H
-#define CLAST_ANALYSIS_PICTURES_PICTURE_LAYOUT_H
+#pragma once
 
 #include "analysis/pictures/picture.h"
 
@@ -18,5 +17,3 @@ status picture_layout_apart(const struct picture_cloud *cloud, size_t count, str
  * fragments 0 .. fragments - 1; 1 for a fragment without discs. STATUS_MEMORY. */
 status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
                               size_t fragments, double *visible);
-
-#endif

@@ -1,8 +1,7 @@
 /* Reading fields files (engine/snapshot_file.h). A file may come from an untrusted source. Before it allocates memory,
  * the reader checks the sizes that a file claims against the size of the file. It opens no other file. HDF5 itself can
  * crash on a damaged file, so each file is read in a separate process. */
-#ifndef CLAST_ANALYSIS_PICTURES_SNAPSHOT_READ_H
-#define CLAST_ANALYSIS_PICTURES_SNAPSHOT_READ_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,5 +38,3 @@ bool snapshot_read_text(struct snapshot_read *file, const char *at, const char *
 /* Reads a number attribute. False, with *value unchanged, when it is missing. */
 bool snapshot_read_real(struct snapshot_read *file, const char *at, const char *name, double *value);
 bool snapshot_read_integer(struct snapshot_read *file, const char *at, const char *name, long long *value);
-
-#endif

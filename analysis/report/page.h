@@ -1,7 +1,6 @@
 /* The page of `clast report`: one HTML file that holds its program and its data. The build makes the empty page
  * (share/clast/report.html) from the other files of this folder; these functions add the data. */
-#ifndef CLAST_ANALYSIS_REPORT_PAGE_H
-#define CLAST_ANALYSIS_REPORT_PAGE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -19,5 +18,3 @@ struct page_data { /* a small SQLite file (db/ask/page.h) */
  * file. STATUS_CONTENT: the empty page has no mark for the data. */
 status page_write(const char *path, const unsigned char *html, size_t html_size, size_t count,
                   const struct page_data *data, size_t *written, struct error *error);
-
-#endif

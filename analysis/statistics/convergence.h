@@ -4,8 +4,7 @@
  *
  * Values of a level are in order of the seed, with the same seed at the same index for every level. NaN: the run
  * failed. */
-#ifndef CLAST_ANALYSIS_STATISTICS_CONVERGENCE_H
-#define CLAST_ANALYSIS_STATISTICS_CONVERGENCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -165,5 +164,3 @@ void convergence_resolve_own(size_t count, struct convergence_row *levels, const
                              const size_t *place, const struct limit_point *own);
 /* The row of a law. */
 void convergence_limit_fill(const struct limit_law *law, struct convergence_limit_row *row);
-
-#endif

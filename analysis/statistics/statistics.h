@@ -1,8 +1,7 @@
 /* Statistics of runs: samples and their intervals, spectra of fragments and their exponents, the scatter over seeds,
  * and which input matters. Every number says how sure it is. Pure functions of arrays; convergence.h has those of
  * studies. */
-#ifndef CLAST_ANALYSIS_STATISTICS_STATISTICS_H
-#define CLAST_ANALYSIS_STATISTICS_STATISTICS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -746,5 +745,3 @@ struct sensitivity_point {
  * for an answer; if there are fewer, index has only verdicts of one value. STATUS_USAGE: all means are equal. */
 status sensitivity_points(const struct sensitivity_points *given, struct sensitivity_point *index, size_t *needed,
                           struct error *error);
-
-#endif

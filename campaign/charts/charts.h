@@ -1,7 +1,6 @@
 /* Charts and pictures of a store: the options and the names that all charts share, quantities over varied inputs, and
  * what each command draws. */
-#ifndef CLAST_CAMPAIGN_CHARTS_CHARTS_H
-#define CLAST_CAMPAIGN_CHARTS_CHARTS_H
+#pragma once
 
 #include "analysis/pictures/picture.h"
 #include "analysis/statistics/statistics.h"
@@ -126,5 +125,3 @@ status picture_draw(const char *fields, const char *picture, const struct pictur
 /* The stability map of a store as a picture: how many runs are safe, warned and refused, for each value of each varied
  * input. */
 status charts_extremes(struct store *store, const char *path, double width, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Every command of the program. A command NAME has two files: NAME.c with its record, and NAME.txt with its help. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
-#define CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
+#pragma once
 
 /* What a command may need: standard headers, options and tables, questions, what is printed and drawn, the farm. */
 #include <inttypes.h>
@@ -107,5 +106,3 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
   OPTION_ROW_TEXT(                                                                                                     \
       "by", 'b', "AXES", type_, member_, NULL,                                                                         \
       .doc = "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point.")
-
-#endif

@@ -1,8 +1,7 @@
 /* Accuracy on demand: the cheapest settings and number of seeds that reach the accuracy of a campaign
  * (`accuracy: {quantity, within}`), or those that give the least error for a time (`accuracy: {quantity,
  * processor_time}`), from a study that `clast converge` has stored. */
-#ifndef CLAST_CAMPAIGN_CONVERGE_ACCURACY_H
-#define CLAST_CAMPAIGN_CONVERGE_ACCURACY_H
+#pragma once
 
 #include "analysis/statistics/convergence.h"
 #include "campaign/document/campaign.h"
@@ -85,5 +84,3 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
  * its runs are equal; at least 3. 0: margin is not above
  * 0, the scatter is not known, or more than 10 000 seeds would be needed, where finer settings are better. */
 int64_t accuracy_seeds(double mean, double deviation, double margin, bool share);
-
-#endif

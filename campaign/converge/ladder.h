@@ -1,6 +1,5 @@
 /* The ladder of a knob in a scene: its levels, coarse to fine, each as a scene that can be run. */
-#ifndef CLAST_CAMPAIGN_CONVERGE_LADDER_H
-#define CLAST_CAMPAIGN_CONVERGE_LADDER_H
+#pragma once
 
 #include "engine/engine.h"
 #include "engine/scene.h"
@@ -41,5 +40,3 @@ void ladder_clear(struct ladder *ladder);
 
 /* Takes the next word from a comma-separated list. A longer one is cut. False: there is none. */
 bool ladder_next_word(const char **list, char *word, size_t size);
-
-#endif

@@ -3,8 +3,7 @@
  * runs are ordinary runs of the store: a stopped study goes on where it ended, and runs of other campaigns are used.
  *
  *     study_launch(&request, line, &error);      // what is asked for, farm, rounds, tables */
-#ifndef CLAST_CAMPAIGN_CONVERGE_STUDY_H
-#define CLAST_CAMPAIGN_CONVERGE_STUDY_H
+#pragma once
 
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
@@ -157,5 +156,3 @@ struct study_subject {
 status study_request_read(const struct study_request *request, const char *path, struct study_subject *subject,
                           struct error *error);
 void study_request_clear(struct study_subject *subject);
-
-#endif

@@ -1,7 +1,6 @@
 /* The points of a campaign: axes, which are paths into the scene with values or laws; designs, which make points of
  * axes; and the stopping rule, which says when a point has enough replicates. */
-#ifndef CLAST_CAMPAIGN_DESIGN_DESIGN_H
-#define CLAST_CAMPAIGN_DESIGN_DESIGN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -137,5 +136,3 @@ double design_stopping_reached(const struct design_stopping *rule, const double 
 /* All replicates below *prefix have ended; values[r] is NaN for a failed run. DESIGN_GROW: *prefix is set to the next
  * prefix to complete. Otherwise the point is finished at this prefix. */
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix);
-
-#endif

@@ -15,8 +15,7 @@
  *     keep: {fields: none}              # none | all | extremes | first N
  *     limits: {time: 10 min, memory: 2 GiB, attempts: 2, failures: 20}
  *     store: thresholds.db              # relative to the current folder */
-#ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
-#define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
+#pragma once
 
 #include "campaign/design/design.h"
 #include "engine/scene.h"
@@ -211,5 +210,3 @@ status sensitivity_design_find(const struct campaign *campaign, enum design_sens
 /* For a Morris design: the input that each step changes, and the signed change of its quantile. Both arrays: inputs x
  * blocks. */
 void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step);
-
-#endif

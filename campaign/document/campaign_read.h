@@ -1,6 +1,5 @@
 /* The readers of a campaign's document. For campaign/document only. */
-#ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
-#define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
+#pragma once
 
 #include "campaign/document/campaign.h"
 
@@ -31,5 +30,3 @@ bool campaign_points_read(document_node *node, const char *folder, struct campai
 
 /* Fills campaign->axes from the mapping (NULL: nothing varied). False when anything was reported. */
 bool campaign_vary_read(document_node *vary, const char *folder, struct campaign *campaign);
-
-#endif

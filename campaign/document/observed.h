@@ -12,8 +12,7 @@
  *           - {quantity: count_above, share: 0.01, value: 12} # fragments heavier than this share of the body
  *       - name: shot 2
  *         fragments: {total: 302 g, complete: 0.5 g, masses: [94 g, 31 g, 12 g]} */
-#ifndef CLAST_CAMPAIGN_DOCUMENT_OBSERVED_H
-#define CLAST_CAMPAIGN_DOCUMENT_OBSERVED_H
+#pragma once
 
 #include "campaign/document/campaign.h"
 #include "db/ask/ask.h"
@@ -52,5 +51,3 @@ void observed_free(struct observed *observed); /* NULL is fine */
 
 /* "shot 1: M1/M" for tables and pictures: the shot's name is left out when there is only one. */
 void observed_label(const struct observed *observed, size_t datum, char *label, size_t size);
-
-#endif

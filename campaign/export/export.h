@@ -1,6 +1,5 @@
 /* What `clast export` writes besides a copy of the store. */
-#ifndef CLAST_CAMPAIGN_EXPORT_EXPORT_H
-#define CLAST_CAMPAIGN_EXPORT_EXPORT_H
+#pragma once
 
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"
@@ -46,5 +45,3 @@ status export_cinema(struct store *store, const char *folder, struct error *erro
  * (.txt), particles as the HDF5 of miluphcuda, which OpenSPH reads, too (.h5). STATUS_USAGE: another ending.
  * STATUS_CONTENT: the file has no such bodies, or is damaged. STATUS_IO, STATUS_MISSING, STATUS_MEMORY. */
 status export_run(const char *fields, const char *target, struct error *error);
-
-#endif

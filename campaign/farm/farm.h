@@ -11,8 +11,7 @@
  * with the most expensive first. Empty runs without a store: 640 000-970 000/s in process, 3 200-4 000/s isolated,
  * because a fork costs half a millisecond of a slot. So isolated is the default; in process is better for runs below
  * about 10 ms. */
-#ifndef CLAST_CAMPAIGN_FARM_FARM_H
-#define CLAST_CAMPAIGN_FARM_FARM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -135,5 +134,3 @@ struct farm_usage {
 struct farm_usage farm_usage(const struct farm *farm);
 
 void farm_stop(struct farm *farm); /* ends slots and server, MPI_Finalize. NULL is fine */
-
-#endif

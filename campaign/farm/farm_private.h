@@ -1,7 +1,6 @@
 /* What the files of the farm share: frames, jobs, slots, the fork server, the pool of a rank, the link between ranks.
  */
-#ifndef CLAST_CAMPAIGN_FARM_FARM_PRIVATE_H
-#define CLAST_CAMPAIGN_FARM_FARM_PRIVATE_H
+#pragma once
 
 #include <signal.h>
 #include <stdatomic.h>
@@ -302,5 +301,3 @@ status farm_manage(struct farm *farm, const struct farm_manager *manager, struct
 
 /* The next stop signal that has come; 0: none. Also SIGTERM, once, when the launcher has died. */
 int farm_signal(struct farm *farm);
-
-#endif

@@ -1,8 +1,7 @@
 /* `clast find`: where a result crosses a level along one input. Rounds of runs, each a campaign of the store, are
  * chosen by analysis/inference/crossing.h. The rounds depend only on the document and the request, so that a repeated
  * command finds its runs in the store and goes on. */
-#ifndef CLAST_CAMPAIGN_FIND_FIND_H
-#define CLAST_CAMPAIGN_FIND_FIND_H
+#pragma once
 
 #include "analysis/inference/crossing.h"
 #include "campaign/charts/charts.h"
@@ -79,5 +78,3 @@ status find_print_picture(const struct find *find, const char *path, const struc
 enum { FIND_TEXT = 96 };
 /* With the digits that a range of places allows, two of its width; its own ends are rounded outwards. */
 const char *find_show_within(const struct find *find, double x, double low, double high, char text[FIND_TEXT]);
-
-#endif

@@ -7,8 +7,7 @@
  *     fit_rounds_launch(line, &options, &error);   // documents, farm, rounds, report
  *
  * The rounds depend only on the documents and the rule, so that a repeated command finds all its runs in the store. */
-#ifndef CLAST_CAMPAIGN_FIT_FIT_H
-#define CLAST_CAMPAIGN_FIT_FIT_H
+#pragma once
 
 #include "analysis/inference/inference.h"
 #include "campaign/charts/charts.h"
@@ -107,5 +106,3 @@ status fit_print(const struct fit *fit, enum table_format format, struct error *
 /* Draws the measurements beside the predictions for one more experiment. */
 status fit_print_picture(const struct fit *fit, const char *path, const struct chart_options *chart,
                          struct error *error);
-
-#endif

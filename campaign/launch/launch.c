@@ -11,7 +11,6 @@
 #include "campaign/print/print.h"
 #include "campaign/terminal/words.h"
 #include "schemas/clock.h"
-#include "schemas/memory.h"
 
 void launch_note(void *context, const char *text) {
   const struct launch_notes *notes = context;

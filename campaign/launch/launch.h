@@ -1,6 +1,5 @@
 /* Shared by the commands that compute with a farm: their options, and the farm from its start to its end. */
-#ifndef CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
-#define CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
+#pragma once
 
 #include "campaign/scheduler/scheduler.h"
 #include "campaign/terminal/option.h"
@@ -73,5 +72,3 @@ status launch_quiet_ranks(status code, struct error *error);
 /* Runs the campaign with a farm, and prints the table of estimates from the store at the end, on rank 0. */
 status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
                        enum table_format format, const struct command_line *line, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* One run outside of a farm, in this process: what `clast simulate` and `clast replay` do between options and results.
  */
-#ifndef CLAST_CAMPAIGN_ONE_RUN_ONE_RUN_H
-#define CLAST_CAMPAIGN_ONE_RUN_ONE_RUN_H
+#pragma once
 
 #include "campaign/scheduler/run.h"
 #include "campaign/terminal/table.h"
@@ -46,5 +45,3 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
  * `promised`. Call it after the table of differences, which shows the stored values. */
 status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,
                       const struct replay_compare *comparison, bool promised, struct error *error);
-
-#endif

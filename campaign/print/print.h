@@ -1,6 +1,5 @@
 /* Answers as tables: what a store or a run has, for people and for programs. */
-#ifndef CLAST_CAMPAIGN_PRINT_PRINT_H
-#define CLAST_CAMPAIGN_PRINT_PRINT_H
+#pragma once
 
 #include "campaign/charts/charts.h"
 #include "campaign/scheduler/run.h"
@@ -90,5 +89,3 @@ struct scaling_choice {
  * number of elements, several inputs vary beside it, or the model is not known to be plane. */
 status print_scaling(struct store *store, const struct scaling_choice *choice, enum table_format format,
                      const struct picture_page *page, struct error *error);
-
-#endif

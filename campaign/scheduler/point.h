@@ -1,7 +1,6 @@
 /* One point of a campaign that is being computed: the states of its replicates, its prefix, and what its runs cost. For
  * driver.c only. */
-#ifndef CLAST_CAMPAIGN_SCHEDULER_POINT_H
-#define CLAST_CAMPAIGN_SCHEDULER_POINT_H
+#pragma once
 
 #include "campaign/document/campaign.h"
 #include "db/ask/ask.h"
@@ -95,5 +94,3 @@ void point_leave(struct point *point, int64_t replicate);
 bool point_over(struct point *point);
 /* Number of runs of the prefix that are neither done nor failed. */
 int64_t point_missing(const struct point *point);
-
-#endif

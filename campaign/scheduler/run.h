@@ -1,8 +1,7 @@
 /* Computes one task of the farm: the same code in process, in children, over MPI and in `clast simulate`. A task holds
  * the engine's name, its encoded inputs, the seed and the files to keep. The answer is one versioned encoding of
  * outcome, engine results, fragments and estimates, made from the field tables. */
-#ifndef CLAST_CAMPAIGN_SCHEDULER_RUN_H
-#define CLAST_CAMPAIGN_SCHEDULER_RUN_H
+#pragma once
 
 #include "analysis/statistics/statistics.h"
 #include "db/store/store.h"
@@ -67,5 +66,3 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv);
 enum { PROVENANCE_BUILD_SIZE = 320 };
 void provenance_other_build(const char *version, const char *commit, const char *compiler,
                             char text[PROVENANCE_BUILD_SIZE]);
-
-#endif

@@ -13,8 +13,7 @@
  *     farm_stop(farm);
  *
  * Each run has an identity, so that nothing is computed twice: a planner looks its runs up in the store first. */
-#ifndef CLAST_CAMPAIGN_SCHEDULER_SCHEDULER_H
-#define CLAST_CAMPAIGN_SCHEDULER_SCHEDULER_H
+#pragma once
 
 #include "campaign/document/campaign.h"
 #include "campaign/farm/farm.h"
@@ -309,5 +308,3 @@ double plan_mean(const struct plan_samples *samples, double mean_work);
 void plan_coarsen(const struct scene *scene, double rate, double seconds, struct scene **coarse, char setting[64]);
 /* The same setting in another scene. NULL: it does not apply. */
 struct scene *plan_coarsen_like(const struct scene *scene, const char *setting);
-
-#endif

@@ -2,8 +2,7 @@
  * https://um-bridge-benchmarks.readthedocs.io). Requests and the farm share one thread: http.c takes requests,
  * request.c reads them and writes answers, model.c makes scenes, and serve.c is the planner of the runs (scheduler.h).
  */
-#ifndef CLAST_CAMPAIGN_SERVE_SERVE_H
-#define CLAST_CAMPAIGN_SERVE_SERVE_H
+#pragma once
 
 #include "campaign/converge/ladder.h"
 #include "campaign/scheduler/scheduler.h"
@@ -137,5 +136,3 @@ void serve_http_run(struct serve_http *http);       /* reads and writes without 
 void serve_http_answer(void *ticket, struct serve_answer answer);
 /* All evaluations must have been answered. Sends the remaining answers for at most a second. NULL is fine. */
 void serve_http_close(struct serve_http *http);
-
-#endif

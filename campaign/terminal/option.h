@@ -2,13 +2,11 @@
  * nearest known name after a typing error, completion and the manual page. No other place lists these names.
  *
  * A command declares a plain struct for its options, rows with offsetof into it, and a function that runs or asks. */
-#ifndef CLAST_CAMPAIGN_TERMINAL_OPTION_H
-#define CLAST_CAMPAIGN_TERMINAL_OPTION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"
@@ -170,5 +168,3 @@ struct campaign_option {
 void option_words(const char *file, const struct option_list *set, const char *store, char *text, size_t size);
 status option_load_campaign(const char *path, const struct campaign_option *option, int slots,
                             struct campaign **campaign, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Progress of a campaign on stderr: on a terminal one line redrawn at most ten times a second, otherwise a plain line
  * per 5 % or per minute, so that a batch log stays short. Colour follows NO_COLOR, TERM=dumb and `--color`. */
-#ifndef CLAST_CAMPAIGN_TERMINAL_PROGRESS_H
-#define CLAST_CAMPAIGN_TERMINAL_PROGRESS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -39,5 +38,3 @@ void progress_free(struct progress *progress); /* ends the bar's line. NULL is f
 
 /* "2 min 05 s", "3 h 20 min", "0.4 s"; "?" for NaN. */
 void progress_duration(double seconds, char *buffer, size_t size);
-
-#endif

@@ -14,8 +14,7 @@
  * get several lines, then texts, then it leaves columns out, the last ones first. It also leaves out columns that are
  * rarely wanted, and those that have the same cell in all rows (engine, failed: table.c names them). A note on stderr
  * names what is left out. With --all nothing is; the table has several parts if need be. */
-#ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
-#define CLAST_CAMPAIGN_TERMINAL_TABLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -129,5 +128,3 @@ void uncertainty_mark(const struct ask_doubts *doubts, char text[UNCERTAINTY_TEX
 
 /* A line for each condition that runs break: how many of how many, what it says, and what to do. */
 void uncertainty_doubts(const struct ask_doubts *doubts, FILE *out);
-
-#endif

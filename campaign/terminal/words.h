@@ -1,6 +1,5 @@
 /* Sentences for people, in lines that a terminal shows whole. */
-#ifndef CLAST_CAMPAIGN_TERMINAL_WORDS_H
-#define CLAST_CAMPAIGN_TERMINAL_WORDS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -18,5 +17,3 @@ void words_wrap_stderr(bool apart);
 
 /* Call before a table for people is printed on stdout, and flush stdout after it. */
 void words_before_table(void);
-
-#endif

@@ -7,8 +7,7 @@
  *
  * An ANSWER closes itself where its block is left, so TRY and return are allowed anywhere. No result is kept in memory.
  * Answers may be nested. A statement that is not read-only is refused. */
-#ifndef CLAST_DB_ASK_ANSWER_H
-#define CLAST_DB_ASK_ANSWER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -80,5 +79,3 @@ status answer_number(struct store *store, double *number, struct error *error, c
  * mark one of them (NULL: none), and the aggregate words(texts) has each word once. The views of a store use none of
  * them, so that any tool can read the views. */
 status ask_register_functions(struct store *store, struct error *error);
-
-#endif

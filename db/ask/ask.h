@@ -1,6 +1,5 @@
 /* The questions to a store, with typed results. The basis of all is answer.h: rows that the caller pulls. */
-#ifndef CLAST_DB_ASK_ASK_H
-#define CLAST_DB_ASK_ASK_H
+#pragma once
 
 #include "db/ask/answer.h"
 
@@ -665,5 +664,3 @@ status ask_page_difference(struct ask_page *page, const char *quantity, int64_t 
 
 /* The file's contents; the caller frees *bytes. */
 status ask_page_file(struct ask_page *page, unsigned char **bytes, size_t *size, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the files of db/store and db/ask share: digests, identities and running sums, the checks of foreign files, and
  * the state of an open store. For db/ only. */
-#ifndef CLAST_DB_STORE_INTERNAL_H
-#define CLAST_DB_STORE_INTERNAL_H
+#pragma once
 
 #include "db/sql.h"
 #include "db/store/store.h"
@@ -296,5 +295,3 @@ status store_set_estimates_rows(struct store *store, int64_t run_id, size_t coun
 /* Makes the shape files of a run's scene known (engine/mesh/mesh.h), so that its scene can be read; run_id 0: all
  * files of the store. STATUS_CONTENT: a file is damaged. */
 status store_point_shapes(struct store *store, int64_t run_id, struct error *error);
-
-#endif

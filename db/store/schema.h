@@ -1,8 +1,7 @@
 /* The tables as data: one row per column with its meaning and unit. The CREATE statements (with a comment on every
  * column), the rows of column_doc and schemas/results.sql follow from them. Columns that are results come from the
  * field tables. */
-#ifndef CLAST_DB_STORE_SCHEMA_H
-#define CLAST_DB_STORE_SCHEMA_H
+#pragma once
 
 #include <stdio.h>
 
@@ -77,5 +76,3 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
 status schema_document_all(sqlite3 *db, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
 status schema_complete_all(sqlite3 *db, struct error *error);
-
-#endif

@@ -5,8 +5,7 @@
  * while writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema.c and the field
  * tables; schemas/results.sql is a copy of the schema. `point.scene` (resolved JSON) and `point_input` define a point.
  * The views runs, points, spectra and estimates are made again when campaigns vary more inputs. */
-#ifndef CLAST_DB_STORE_STORE_H
-#define CLAST_DB_STORE_STORE_H
+#pragma once
 
 #include <stdio.h>
 
@@ -182,5 +181,3 @@ status store_export(struct store *store, const char *path, struct error *error);
 /* Writes a line for each point and each run that is not surplus, by identity, with the digest of its inputs, results,
  * masses and estimates as they are now. No times, hosts or sessions. The text is the same for any number of workers. */
 status store_export_digests(struct store *store, FILE *out, struct error *error);
-
-#endif

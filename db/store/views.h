@@ -1,10 +1,8 @@
 /* The views `runs`, `points`, `spectra`, `estimates`, `resolution`: flat tables for any tool, one column per varied
  * input. Plain SQL only, so that a database browser or pandas can open them. clast itself never runs the views of a
  * file (db/store/guard.h): every connection makes temporary ones of the same names, which take precedence. */
-#ifndef CLAST_DB_STORE_VIEWS_H
-#define CLAST_DB_STORE_VIEWS_H
+#pragma once
 
-#include <stdbool.h>
 #include <stdio.h>
 
 #include "analysis/statistics/statistics.h"
@@ -69,5 +67,3 @@ void views_statistics_resolution(size_t count, const char *const *names, FILE *o
 /* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom: sample_student()
  * for tools without our functions, within 5e-6. */
 void views_statistics_student(const char *degrees, FILE *out);
-
-#endif

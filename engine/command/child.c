@@ -7,7 +7,6 @@
  * those that left the group. At the end of `life` it removes the folder. */
 #include "engine/command/child.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>

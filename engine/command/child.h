@@ -1,6 +1,5 @@
 /* One run of a program: its folder, its process and all processes that it starts. */
-#ifndef CLAST_ENGINE_COMMAND_CHILD_H
-#define CLAST_ENGINE_COMMAND_CHILD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,5 +37,3 @@ status child_run(struct child *child, const char *program, char *const *words, c
 
 /* Ends all processes that are left and removes the folder. The same happens when this process dies in any way. */
 void child_close(struct child *child);
-
-#endif

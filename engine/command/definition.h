@@ -1,7 +1,6 @@
 /* The section `command` of a scene: a program, how it takes inputs and where it leaves results. Each definition is an
  * engine of its own name "command" with its own rows. It lives as long as the process. */
-#ifndef CLAST_ENGINE_COMMAND_DEFINITION_H
-#define CLAST_ENGINE_COMMAND_DEFINITION_H
+#pragma once
 
 #include "engine/engine.h"
 #include "engine/fragments.h"
@@ -89,5 +88,3 @@ status output_read(const struct definition *definition, const char *folder, doub
 
 /* The last words of a text file, in one line; empty: none. */
 void output_last_words(const char *folder, const char *name, char *words, size_t size);
-
-#endif

@@ -1,11 +1,8 @@
 /* Engine `dem`: grains joined by breakable beams, in 2D (Kun, D'Addetta, Herrmann & Ramm 1999). */
-#ifndef CLAST_ENGINE_DEM_DEM_H
-#define CLAST_ENGINE_DEM_DEM_H
+#pragma once
 
 #include "engine/dem/observe/results.h"
 #include "engine/dem/scene/inputs.h"
 #include "engine/engine.h"
 
 extern const struct engine_kind dem_engine;
-
-#endif

@@ -1,6 +1,5 @@
 /* Makes a mesh from its file; used inside engine/mesh only. */
-#ifndef CLAST_ENGINE_MESH_BUILD_H
-#define CLAST_ENGINE_MESH_BUILD_H
+#pragma once
 
 #include "engine/mesh/mesh.h"
 
@@ -33,5 +32,3 @@ void mesh_search_free(struct mesh *mesh);
 
 /* The unit normal of a face, outwards. */
 void mesh_normal(const struct mesh *mesh, uint32_t face, double normal[3]);
-
-#endif

@@ -5,8 +5,7 @@
  * leave the solid in turn. So cavities and several parts are fine; holes and faces that cut others are not.
  *
  * Files are untrusted data, and their size is limited. */
-#ifndef CLAST_ENGINE_MESH_MESH_H
-#define CLAST_ENGINE_MESH_MESH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -69,5 +68,3 @@ status mesh_files_add(const char *name, const void *bytes, size_t size, const st
                       struct error *error);
 /* NULL: no file of this hash has been read. */
 const struct mesh_file *mesh_files_find(const char *hash);
-
-#endif

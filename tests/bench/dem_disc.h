@@ -1,6 +1,5 @@
 /* K99's disc and its charge, for the bench: the cells round the central one leave it with v = c S/m and energy E_o. */
-#ifndef CLAST_TESTS_BENCH_DEM_DISC_H
-#define CLAST_TESTS_BENCH_DEM_DISC_H
+#pragma once
 
 #include <math.h>
 
@@ -67,5 +66,3 @@ static inline void dem_disc_charge(struct dem_system *system, const struct dem_t
     }
   dem_system_remove(system, centre);
 }
-
-#endif

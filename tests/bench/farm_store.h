@@ -1,7 +1,6 @@
 /* Synthetic tasks whose reports go into a store as runs of one point: the work of a campaign's manager, without
  * physics. */
-#ifndef CLAST_TESTS_BENCH_FARM_STORE_H
-#define CLAST_TESTS_BENCH_FARM_STORE_H
+#pragma once
 
 #include "db/store/store.h"
 #include "tests/support/farm_tasks.h"
@@ -61,5 +60,3 @@ static inline void storing_end(struct storing *s) {
   fixture_path(path, "bench-farm"); /* removes it */
   free(s->run);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A plain C version of the same model: bench_dem's ratios refer to its speed. FROZEN: it is never optimised or changed,
  * so that a ratio means the same on every machine and in every year. */
-#ifndef CLAST_TESTS_BENCH_REFERENCE_DEM_H
-#define CLAST_TESTS_BENCH_REFERENCE_DEM_H
+#pragma once
 
 #include "engine/dem/step/system.h"
 
@@ -12,5 +11,3 @@ void reference_dem_state(struct reference_dem *reference, const struct dem_syste
 void reference_dem_step(struct reference_dem *reference);
 double reference_dem_energy(struct reference_dem *reference);
 void reference_dem_free(struct reference_dem *reference);
-
-#endif

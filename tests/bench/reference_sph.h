@@ -1,7 +1,6 @@
 /* The pair loop in plain C: the frozen reference of bench_sph, with which unit tests compare the fast kernels. It is no
  * part of the program. */
-#ifndef CLAST_TESTS_BENCH_REFERENCE_SPH_H
-#define CLAST_TESTS_BENCH_REFERENCE_SPH_H
+#pragma once
 
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
@@ -27,5 +26,3 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
 
 /* Monaghan's artificial stress of one particle: -epsilon times the tensile part of a stress (xx xy xz yy yz zz). */
 void reference_sph_opposed(double epsilon, const double stress[6], double artificial[6]);
-
-#endif

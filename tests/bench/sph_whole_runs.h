@@ -1,7 +1,6 @@
 /* Whole steps of the SPH solid, for bench_sph: the scene `basalt-sphere` with all its physics. Each prints its figures.
  */
-#ifndef CLAST_TESTS_BENCH_SPH_WHOLE_RUNS_H
-#define CLAST_TESTS_BENCH_SPH_WHOLE_RUNS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -14,5 +13,3 @@ void sph_whole_runs_sizes(void);
 void sph_whole_runs_modules(void);
 /* Two threads against one: wall time of whole steps. */
 void sph_whole_runs_threads(void);
-
-#endif

@@ -1,8 +1,7 @@
 /* A file for fuzz targets: a complete one, changed by a list of edits. A reader would refuse random bytes at the first
  * check. An edit is 6 bytes: where (3), whether at the beginning of a block of 4096 bytes (1), the change (1), how many
  * bytes (1). The count 255 cuts the file off there. */
-#ifndef CLAST_TESTS_FUZZ_EDITS_H
-#define CLAST_TESTS_FUZZ_EDITS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -55,5 +54,3 @@ static inline bool edits_write(const struct edits_file *whole, const uint8_t *ed
   free(bytes);
   return changed;
 }
-
-#endif

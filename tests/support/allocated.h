@@ -1,6 +1,5 @@
 /* Memory of this process that malloc() and its kin have given and that is not yet freed, in bytes. */
-#ifndef CLAST_TESTS_ALLOCATED_H
-#define CLAST_TESTS_ALLOCATED_H
+#pragma once
 
 #include <stddef.h>
 
@@ -15,6 +14,4 @@ static inline size_t allocated(void) {
   const struct mallinfo2 all = mallinfo2();
   return all.uordblks + all.hblkhd;
 }
-#endif
-
 #endif

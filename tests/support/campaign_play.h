@@ -1,7 +1,6 @@
 /* A farm played by the test: tasks are taken from a scheduler, computed by the toy engine and reported in an order that
  * the test chooses. */
-#ifndef CLAST_TESTS_CAMPAIGN_PLAY_H
-#define CLAST_TESTS_CAMPAIGN_PLAY_H
+#pragma once
 
 #include <math.h>
 #include <stdio.h>
@@ -165,5 +164,3 @@ static inline void play_remove(const char *path) {
     unlink(other);
   }
 }
-
-#endif

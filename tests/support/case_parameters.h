@@ -1,6 +1,5 @@
 /* Parameters of a moving solid in a test, beside its bodies: inputs at the defaults of their rows, in open space. */
-#ifndef CLAST_TESTS_CASE_PARAMETERS_H
-#define CLAST_TESTS_CASE_PARAMETERS_H
+#pragma once
 
 #include "engine/sph/step/system.h"
 
@@ -14,5 +13,3 @@ static inline struct case_parameters case_parameters_default(void) {
   field_defaults(&sph_inputs, &p.in);
   return p;
 }
-
-#endif

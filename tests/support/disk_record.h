@@ -8,8 +8,7 @@
  * The model of the disk: a sync of a file keeps all its bytes; a sync of a folder keeps its names. What is not synced
  * may be lost or kept, each 512 bytes of a write on its own; names in the order of their changes, as file systems with
  * a journal do. A file of which only the name was synced is empty. */
-#ifndef CLAST_TESTS_DISK_RECORD_H
-#define CLAST_TESTS_DISK_RECORD_H
+#pragma once
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -440,5 +439,3 @@ static void disk_cut(struct disk_play *play, size_t count, enum disk_rest rest, 
     free(content.bytes);
   }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A table of a few rows of all kinds, and the report of a document that is read with it. */
-#ifndef CLAST_TESTS_DOCUMENT_THING_H
-#define CLAST_TESTS_DOCUMENT_THING_H
+#pragma once
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -106,5 +105,3 @@ static char *report_of(const char *text, size_t size, struct thing *thing) {
 static char *report_text(const char *text, struct thing *thing) {
   return report_of(text, strlen(text), thing);
 }
-
-#endif

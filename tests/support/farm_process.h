@@ -3,8 +3,7 @@
  *
  * Every process of a launch carries the same tag in its environment, so that /proc shows which are still alive,
  * whatever their parent process is by then. */
-#ifndef CLAST_TESTS_FARM_PROCESS_H
-#define CLAST_TESTS_FARM_PROCESS_H
+#pragma once
 
 #include <dirent.h>
 #include <errno.h>
@@ -310,5 +309,3 @@ static inline int orphans(const struct running *running, double seconds) {
   unlink(running->wakings);
   return count;
 }
-
-#endif

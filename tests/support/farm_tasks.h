@@ -1,6 +1,5 @@
 /* Synthetic tasks for the farm's tests and bench: each shows one correct or faulty behaviour of a run. */
-#ifndef CLAST_TESTS_FARM_TASKS_H
-#define CLAST_TESTS_FARM_TASKS_H
+#pragma once
 
 #include <fcntl.h>
 #include <signal.h>
@@ -239,5 +238,3 @@ static inline struct farm_manager task_list_manager(struct task_list *list) {
                                .tick = task_list_tick,
                                .stopping = task_list_stopping};
 }
-
-#endif

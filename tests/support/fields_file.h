@@ -1,6 +1,5 @@
 /* Reads fields files with HDF5 in a test. Any error fails the test. */
-#ifndef CLAST_TESTS_FIELDS_FILE_H
-#define CLAST_TESTS_FIELDS_FILE_H
+#pragma once
 
 #include <hdf5.h>
 
@@ -39,5 +38,3 @@ UNUSED static size_t fields_file_described(hid_t file) {
   assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, fields_file_look, &count, H5O_INFO_BASIC) >= 0);
   return count;
 }
-
-#endif

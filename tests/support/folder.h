@@ -1,6 +1,5 @@
 /* A separate folder for a test program: make_folder and remove_folder are the set-up and tear-down of its group. */
-#ifndef CLAST_TESTS_FOLDER_H
-#define CLAST_TESTS_FOLDER_H
+#pragma once
 
 #include <stdlib.h>
 
@@ -24,5 +23,3 @@ static inline int remove_folder(void **state) {
   (void)state;
   return sweep(folder); /* fails when a test or a failed write left anything behind */
 }
-
-#endif

@@ -2,8 +2,7 @@
  * If such a test fails and the change was intended, raise the engine's .results_version and put its number and the
  * printed hashes into the test. Otherwise the change has a fault. The CPU variants of glibc are masked, so that every
  * x86-64 machine gives the same bits. */
-#ifndef CLAST_TESTS_GOLDEN_H
-#define CLAST_TESTS_GOLDEN_H
+#pragma once
 
 #include <unistd.h>
 
@@ -58,5 +57,3 @@ UNUSED static int golden_changed(const struct engine_kind *kind, const char *nam
   print_error("%s: the bits of results_version %d changed: %s, pinned %s\n", name, kind->results_version, text, pinned);
   return 1;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The law of damage of one particle in plain C, from the flaws as they were drawn. The engine's loops (fracture.h) must
  * give the same. */
-#ifndef CLAST_TESTS_GRADY_KIPP_H
-#define CLAST_TESTS_GRADY_KIPP_H
+#pragma once
 
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/material.h"
@@ -30,5 +29,3 @@ static inline double grady_kipp_grow(double damage_cbrt, size_t open, size_t tot
     grown = limit;
   return grown > damage_cbrt ? grown : damage_cbrt;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Synthetic models for the tests of inference: cheap functions of the inputs with a scatter over seeds replace an
  * engine; also the rounds of a fit with them. */
-#ifndef CLAST_TESTS_SUPPORT_INFERENCE_CASES_H
-#define CLAST_TESTS_SUPPORT_INFERENCE_CASES_H
+#pragma once
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -110,5 +109,3 @@ static inline void case_clear(struct case_fit *fit) {
   surfaces_clear(&fit->surfaces);
   posterior_clear(&fit->posterior);
 }
-
-#endif

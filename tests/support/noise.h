@@ -1,6 +1,5 @@
 /* Numbers for tests, by splitmix64: the same on every machine. */
-#ifndef CLAST_TESTS_NOISE_H
-#define CLAST_TESTS_NOISE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -10,5 +9,3 @@ static inline double noise(uint64_t *state) { /* -1/2..1/2 */
   z = (z ^ z >> 27) * 0x94d049bb133111ebu;
   return (double)((z ^ z >> 31) >> 11) * 0x1p-53 - 0.5;
 }
-
-#endif

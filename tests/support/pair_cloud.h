@@ -1,7 +1,6 @@
 /* Particles with all fields that the pair loop reads, drawn from a seed, for its tests. Uses cmocka: include it after
  * cmocka's headers. */
-#ifndef CLAST_TESTS_PAIR_CLOUD_H
-#define CLAST_TESTS_PAIR_CLOUD_H
+#pragma once
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,5 +49,3 @@ static inline struct cloud *cloud_make(int side, double spacing, bool mixed, uin
 static inline double slack_of(const struct cloud *c, const struct sph_pairs *pairs) {
   return sph_pairs_slack(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]);
 }
-
-#endif

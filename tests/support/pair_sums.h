@@ -1,7 +1,6 @@
 /* Sums of the pair loop in arrays of all particles, for tests and benchmarks: engine/sph/pairs/pairs.h delivers them
  * piece by piece. */
-#ifndef CLAST_TESTS_PAIR_SUMS_H
-#define CLAST_TESTS_PAIR_SUMS_H
+#pragma once
 
 #include <string.h>
 
@@ -27,5 +26,3 @@ static inline void pair_sums_keep(void *context, size_t first, size_t count, con
     pair_sums_copy(all->correction[k], first, count, sums->correction[k]);
   pair_sums_copy(all->correction_share[0], first, count, sums->correction_share[0]);
 }
-
-#endif

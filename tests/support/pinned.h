@@ -1,7 +1,6 @@
 /* Pinned answers: a text that the program computes is compared line by line with a file that was looked at.
  * CLAST_RENEW=1 writes the file anew: commit it only after each line of `git diff` is a change that you meant. */
-#ifndef CLAST_TESTS_PINNED_H
-#define CLAST_TESTS_PINNED_H
+#pragma once
 
 #include <malloc.h>
 #include <math.h>
@@ -72,5 +71,3 @@ __attribute__((unused)) static void pinned_frees(const char *name, void (*work)(
   if (times >= 4)
     fail_msg("%s leaves %zu bytes behind", name, grown);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Runs a built-in scene of any engine, with a few overrides, in a test. Any error fails the test. */
-#ifndef CLAST_TESTS_RUN_CASE_H
-#define CLAST_TESTS_RUN_CASE_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -108,5 +107,3 @@ UNUSED static size_t run_case_seeds(size_t quick, size_t full) {
   size_t n = asked ? strtoul(asked, NULL, 10) : 0;
   return n > 0 && n <= 1000 ? n : run_case_full() ? full : quick;
 }
-
-#endif

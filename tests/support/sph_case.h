@@ -1,6 +1,5 @@
 /* Small solids for the tests of the moving system: cubic blocks, basalt, and a few measured quantities. */
-#ifndef CLAST_TESTS_SPH_CASE_H
-#define CLAST_TESTS_SPH_CASE_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -127,5 +126,3 @@ static CASE_UNUSED void case_loops(struct sph_system *s, const struct case_loop 
 static CASE_UNUSED double case_total(struct sph_ledger l) {
   return l.kinetic + l.internal + l.damped - l.work_of_held;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A small collision that breaks both bodies, for tests of the moving solid. */
-#ifndef CLAST_TESTS_SPH_COLLISION_H
-#define CLAST_TESTS_SPH_COLLISION_H
+#pragma once
 
 #include "tests/support/sph_case.h"
 
@@ -37,5 +36,3 @@ static inline void let_go(struct collision *c) {
   sph_flaws_free(c->flaws[0]);
   sph_flaws_free(c->flaws[1]);
 }
-
-#endif

@@ -7,8 +7,7 @@
  *   solid_start(&c);                        the system
  *   solid_until(&c, t); solid_read(&c);  c.particles at time t
  *   solid_end(&c); */
-#ifndef CLAST_TESTS_SPH_SOLID_H
-#define CLAST_TESTS_SPH_SOLID_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -261,5 +260,3 @@ UNUSED static void solid_same(const struct solid_case *a, const struct solid_cas
   free(state);
   free(other);
 }
-
-#endif

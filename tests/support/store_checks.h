@@ -1,7 +1,6 @@
 /* Common parts of tests of the store: calls that must succeed, bytes of a file, one number of a query. Include cmocka
  * first. */
-#ifndef CLAST_TESTS_STORE_CHECKS_H
-#define CLAST_TESTS_STORE_CHECKS_H
+#pragma once
 
 #include "tests/support/store_fixture.h"
 
@@ -56,5 +55,3 @@ static inline double number(struct store *store, const char *sql) {
   OK(answer_number(store, &value, &error, "%s", sql));
   return value;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A small engine of invented numbers and functions that fill a store with it, for the tests and the bench of the store.
  * Like real engines it has an input that may be off, one that depends on another, choices, and its own result table. */
-#ifndef CLAST_TESTS_STORE_FIXTURE_H
-#define CLAST_TESTS_STORE_FIXTURE_H
+#pragma once
 
 #include <math.h>
 #include <stdio.h>
@@ -223,5 +222,3 @@ static inline const char *fixture_path(char path[64], const char *name) {
   }
   return path;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Removes a test's folder when the test ends, passed or failed. */
-#ifndef CLAST_TESTS_SWEEP_H
-#define CLAST_TESTS_SWEEP_H
+#pragma once
 
 #include <dirent.h>
 #include <stdio.h>
@@ -25,5 +24,3 @@ static inline int sweep(const char *folder) {
   rmdir(folder);
   return left;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* An engine without physics, for tests that need runs and not results: a stick whose pieces are drawn from its inputs
  * and the seed. A run can wait, so that a campaign lasts as long as a test needs and uses hardly any processor time. */
-#ifndef CLAST_TESTS_TOY_ENGINE_H
-#define CLAST_TESTS_TOY_ENGINE_H
+#pragma once
 
 #include "engine/engine.h"
 
@@ -21,5 +20,3 @@ struct toy_results {
 extern struct engine_kind toy_engine; /* a test may replace its functions */
 /* Its write_snapshot: a file with the run's seed. */
 status toy_write_fields(void *run, const char *path, struct error *error);
-
-#endif

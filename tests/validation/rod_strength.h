@@ -1,7 +1,6 @@
 /* Strength of the scene tensile-rod against the number of particles, for the tests of two methods that keep it
  * constant. */
-#ifndef CLAST_TESTS_ROD_STRENGTH_H
-#define CLAST_TESTS_ROD_STRENGTH_H
+#pragma once
 
 #include "tests/support/run_case.h"
 
@@ -31,5 +30,3 @@ static double rod_strength_spread(const char *option, const char *rate, const ch
   }
   return most / least - 1;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Small systems for the tests of the moving grains. A system keeps a pointer to the inputs of its creation: they must
  * outlive it. */
-#ifndef CLAST_TESTS_VERIFICATION_DEM_FIXTURE_H
-#define CLAST_TESTS_VERIFICATION_DEM_FIXTURE_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -129,5 +128,3 @@ static inline double fixture_random(uint64_t *state) {
   *state = *state * 6364136223846793005u + 1442695040888963407u;
   return (double)(*state >> 11) * 0x1p-52 - 1.0;
 }
-
-#endif

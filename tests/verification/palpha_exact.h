@@ -4,8 +4,7 @@
  * A piston that drives porous matter at rest makes two fronts when it is strong enough to crush: an elastic precursor
  * to P_e, and behind it the crushing shock. Across each, with the state ahead 1 and behind 2, in the frame of the
  * matter ahead: rho1 U = rho2 (U - w),  P2 - P1 = rho1 U w,  u2 - u1 = (P1 + P2)/2 (1/rho1 - 1/rho2). */
-#ifndef CLAST_TESTS_PALPHA_EXACT_H
-#define CLAST_TESTS_PALPHA_EXACT_H
+#pragma once
 
 #include <math.h>
 
@@ -100,5 +99,3 @@ static void exact_piston(const struct exact_matter *m, double piston, struct exa
 
 static const struct exact_matter exact_porous_aluminium = {2700, 7.52e10, 6.5e10, 0.5,   1.63,
                                                            5e6,  1.275,   80e6,   700e6, 4110};
-
-#endif

@@ -12,8 +12,7 @@
  * common side while 1 or 2 is inside. Then all its other vertices are outside too (distance to a line has one minimum
  * round a convex outline), so none of its other sides reaches the half-plane of the other grain. If this does not hold
  * and no common side separates the grains, the lane goes to the general overlap. */
-#ifndef CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
-#define CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
+#pragma once
 
 #include "engine/dem/contacts/contact_range.h"
 #include "engine/dem/step/system_layout.h"
@@ -329,5 +328,3 @@ LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, enum dem
     }
   }
 }
-
-#endif

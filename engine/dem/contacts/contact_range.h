@@ -6,8 +6,7 @@
  * -|C| n . d. So the potential kappa A^2 / 2 gives grain 1 the force kappa A |C| n, with the moment kappa A W about the
  * origin, W = sum of (|p1|^2 - |p0|^2)/2 over the pieces = C . (chord's middle): the force acts at the chord's middle.
  * Other laws (laws.h) have the same direction and place. */
-#ifndef CLAST_ENGINE_DEM_CONTACTS_CONTACT_RANGE_H
-#define CLAST_ENGINE_DEM_CONTACTS_CONTACT_RANGE_H
+#pragma once
 
 #include <math.h>
 
@@ -395,5 +394,3 @@ LANES_INLINE void near_general(struct dem_system *s, bool measure, enum dem_cont
   }
   near_flush(s, &batch, measure, law, velocities);
 }
-
-#endif

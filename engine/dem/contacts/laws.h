@@ -2,8 +2,7 @@
  *
  * Two grains overlap by the area A; the chord joins the two points where their outlines cross. The elastic force acts
  * at the chord's middle, at right angles to it (contact_range.h). A law says how large it is. */
-#ifndef CLAST_ENGINE_DEM_CONTACTS_LAWS_H
-#define CLAST_ENGINE_DEM_CONTACTS_LAWS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -76,6 +75,4 @@ LANES_INLINE lanes_d dem_laws_elastic(enum dem_contact_law law, lanes_d coeffici
   }
   return lanes_all(0.0);
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 /* Grains of a body: the Voronoi cells of a random lattice (K99 section 2.1), cut by the body's outline. */
-#ifndef CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
-#define CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -72,5 +71,3 @@ status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tesse
 status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
                              struct dem_tessellation **out, struct error *error);
 void dem_tessellation_free(struct dem_tessellation *tessellation); /* NULL is fine */
-
-#endif

@@ -1,7 +1,6 @@
 /* Results of engine `dem` in addition to struct outcome: table result_dem. A quantity that does not apply is off (NaN).
  */
-#ifndef CLAST_ENGINE_DEM_OBSERVE_RESULTS_H
-#define CLAST_ENGINE_DEM_OBSERVE_RESULTS_H
+#pragma once
 
 #include "schemas/field.h"
 
@@ -31,5 +30,3 @@ struct dem_results {
 };
 
 extern const struct field_table dem_results;
-
-#endif

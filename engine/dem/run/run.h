@@ -1,6 +1,5 @@
 /* One run of engine `dem`: body, moving grains, protocol and records so far. For engine/dem and its tests only. */
-#ifndef CLAST_ENGINE_DEM_RUN_RUN_H
-#define CLAST_ENGINE_DEM_RUN_RUN_H
+#pragma once
 
 #include "engine/condition.h"
 #include "engine/dem/observe/results.h"
@@ -90,5 +89,3 @@ extern const struct condition dem_conditions[]; /* engine_kind.conditions */
 
 /* snapshot.c */
 status dem_snapshot_write(void *run, const char *path, struct error *error);
-
-#endif

@@ -1,8 +1,7 @@
 /* The typed scene of engine `dem`: every input of every protocol, with one row each in inputs.c. SI units throughout.
  *
  * The physics reads these sections by const pointer. Only the rows have ranges and defaults. */
-#ifndef CLAST_ENGINE_DEM_SCENE_INPUTS_H
-#define CLAST_ENGINE_DEM_SCENE_INPUTS_H
+#pragma once
 
 #include "engine/dem/contacts/laws.h"
 #include "schemas/field.h"
@@ -90,5 +89,3 @@ bool dem_inputs_loaded(const struct dem_inputs *inputs);
 double dem_inputs_grains(const struct dem_inputs *inputs);
 /* Simulated time at which the run ends at the latest, s. */
 double dem_inputs_end_time(const struct dem_inputs *inputs);
-
-#endif

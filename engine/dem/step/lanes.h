@@ -3,8 +3,7 @@
  * The including file sets LANES to its class's register width (2, 4 or 8). Data lie in blocks of eight for any
  * class, and running sums are kept per block lane, so that their order is the same everywhere. Products and sums may
  * contract to FMA where the class has it; so a run records its class. */
-#ifndef CLAST_ENGINE_DEM_STEP_LANES_H
-#define CLAST_ENGINE_DEM_STEP_LANES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -178,5 +177,3 @@ LANES_INLINE void lanes_sincos(lanes_d angle, lanes_d *sine, lanes_d *cosine) {
   *sine = (lanes_d)((lanes_i)lanes_select(odd, c, s) ^ sine_negative);
   *cosine = (lanes_d)((lanes_i)lanes_select(odd, s, c) ^ cosine_negative);
 }
-
-#endif

@@ -2,8 +2,7 @@
  * engine/dem/README.md.
  *
  * All arrays are allocated at set-up; nothing is allocated in the step loop. */
-#ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_H
-#define CLAST_ENGINE_DEM_STEP_SYSTEM_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -68,5 +67,3 @@ size_t dem_system_outline(const struct dem_system *system, uint32_t grain, size_
 size_t dem_system_state_size(const struct dem_system *system);
 void dem_system_state_save(const struct dem_system *system, void *bytes);
 bool dem_system_state_load(struct dem_system *system, const void *bytes, size_t size);
-
-#endif

@@ -5,8 +5,7 @@
  * common side of either grain with the side before and after it (bond_range.h says when this is exact). All other near
  * pairs are in near blocks, each with a cached separating side. Pairs that neither decides go one by one to the general
  * overlap of two convex polygons (contact_range.h). */
-#ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
-#define CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
+#pragma once
 
 #include "engine/cpu_class.h"
 #include "engine/dem/lattice/tessellation.h"
@@ -282,5 +281,3 @@ extern const struct dem_kernels dem_kernels_v3, dem_kernels_v4;
 static inline const struct dem_kernels *dem_kernels_choose(void) {
   return CPU_CLASS_OF(dem_kernels);
 }
-
-#endif

@@ -7,8 +7,7 @@
  *   sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &particles, range, &error)   also checks for overlaps
  *   sph_bodies_move(particles, range[1], velocity)
  *   sph_flaws_place(&law, &body[0].shape, particles, range[0], NULL, &flaws, &error)   (flaws.h) */
-#ifndef CLAST_ENGINE_SPH_BODY_BODIES_H
-#define CLAST_ENGINE_SPH_BODY_BODIES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -214,5 +213,3 @@ enum sph_side {
 };
 void sph_bodies_damp(struct sph_particles *particles, struct sph_range range, const struct sph_shape *box, int sides,
                      double margin, double rate);
-
-#endif

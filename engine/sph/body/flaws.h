@@ -9,8 +9,7 @@
  *
  * Flaws are points in the body's true shape (sph_flaws_place), so that one seed means the same physical flaws at every
  * resolution. */
-#ifndef CLAST_ENGINE_SPH_BODY_FLAWS_H
-#define CLAST_ENGINE_SPH_BODY_FLAWS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -102,5 +101,3 @@ double sph_flaws_lowest(const struct sph_flaws_lists *lists, size_t particle);
 uint32_t sph_flaws_total(const struct sph_flaws_lists *lists, size_t particle);
 /* Number of open flaws; the same for every strain with bracket[0] <= strain < bracket[1]. */
 uint32_t sph_flaws_active(const struct sph_flaws_lists *lists, size_t particle, double strain, double bracket[2]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Finds the nearest of n points, by a k-d tree. Memory is proportional to n, however uneven the points are. */
-#ifndef CLAST_ENGINE_SPH_BODY_KD_TREE_H
-#define CLAST_ENGINE_SPH_BODY_KD_TREE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ size_t sph_kd_tree_within(const struct sph_kd_tree *nearest, const double point[
  * STATUS_MEMORY. */
 status sph_hilbert_find(size_t n, const double *x, const double *y, const double *z, uint32_t *order,
                         struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Particles as they are set up and read back: plain arrays in the order of their ids, bodies one after the other. (The
  * moving system sorts them in space.) Arrays that a scene does not need are NULL. */
-#ifndef CLAST_ENGINE_SPH_BODY_PARTICLES_H
-#define CLAST_ENGINE_SPH_BODY_PARTICLES_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -73,5 +72,3 @@ void sph_particles_free(struct sph_particles *particles); /* NULL is fine */
 /* The largest number of bytes for this process: the machine's memory or the limit of its address space. A larger
  * request is refused, with the number, before anything is allocated. */
 size_t sph_particles_memory(void);
-
-#endif

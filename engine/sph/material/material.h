@@ -9,8 +9,7 @@
  * The default of a number is NAN: a material gives it (FIELD_REQUIRED), or it is off unless given (FIELD_MAY_BE_OFF).
  * `.when` says which bodies use it: "../strength=true", "../fracture=auto|on", or a choice of the material. The first
  * word of a choice is the default, and no value counts with it; its label is what messages call it. */
-#ifndef CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
-#define CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -102,5 +101,3 @@ status sph_materials_open(const char *path, void *out, char **text, struct error
 /* Where a value of a named material comes from, by the document's `sources` (the value's or its section's), else its
  * `source`. STATUS_MISSING: the document does not say. */
 status sph_materials_source(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);
-
-#endif

@@ -16,8 +16,7 @@
  * step closes all pores.) In tension alpha rises on the elastic branch, never above alpha_0.
  *
  * A body without pores has none of this: no array, no call (off means absent). */
-#ifndef CLAST_ENGINE_SPH_MATERIAL_PALPHA_H
-#define CLAST_ENGINE_SPH_MATERIAL_PALPHA_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -103,5 +102,3 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
                        struct error *error);
 /* Prints the existing fronts, one per line. */
 void sph_plane_shock_describe(const struct sph_plane_shock *shock, FILE *out);
-
-#endif

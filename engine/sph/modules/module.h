@@ -14,8 +14,7 @@
  *
  * A step runs the stages in order, block by block, and within a stage the modules in the order of declarations.h. The
  * pair loop runs before SPH_FORCES. */
-#ifndef CLAST_ENGINE_SPH_MODULES_MODULE_H
-#define CLAST_ENGINE_SPH_MODULES_MODULE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -172,5 +171,3 @@ void sph_modules_complete_material(struct sph_material *material, const bool *gi
 size_t sph_modules_bytes_linked(const struct sph_module_set *modules);
 /* Bytes per particle that they add to the pair loop's records. */
 size_t sph_modules_bytes_in_pairs(const struct sph_module_set *modules);
-
-#endif

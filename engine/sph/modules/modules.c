@@ -1,5 +1,4 @@
 /* The descriptors of all modules; which modules a body has, and what they need. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,7 @@
 /* Tools of all loops over particles; and, where RANGES_TABLE is set, the loops of all modules and their table, for one
  * CPU class. These are plain loops that GCC vectorises. The result of a particle depends on no other
  * particle of the loop, so that the width of the vectors changes bits only through contraction to FMA. */
-#ifndef CLAST_ENGINE_SPH_MODULES_RANGES_H
-#define CLAST_ENGINE_SPH_MODULES_RANGES_H
+#pragma once
 
 #include <math.h>
 #include <string.h>
@@ -65,7 +64,5 @@ const struct sph_ranges RANGES_TABLE = {
     .correct_whole = motion_correct_whole,
     .correct_damaged = motion_correct_damaged,
 };
-
-#endif
 
 #endif

@@ -6,8 +6,7 @@
  * columns of two spacings. The surface in a column is the highest retained particle. The crater is the connected region
  * round the axis where the surface lies at least one spacing deeper than at the start. Two processes make a crater:
  * ejecta leave, and matter is compacted permanently, which the modules that compact it measure. */
-#ifndef CLAST_ENGINE_SPH_OBSERVE_OBSERVE_H
-#define CLAST_ENGINE_SPH_OBSERVE_OBSERVE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -132,5 +131,3 @@ status sph_fragments_find(const struct sph_particles *particles, const struct sp
 void sph_fragments_clear(struct sph_fragments *fragments);
 /* Of a local variable, cleared where its block is left: SPH_FRAGMENTS found = {0}; */
 #define SPH_FRAGMENTS __attribute__((cleanup(sph_fragments_clear))) struct sph_fragments
-
-#endif

@@ -1,6 +1,5 @@
 /* From the final state to the outcome, the results and the fragments. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

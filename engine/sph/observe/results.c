@@ -2,7 +2,6 @@
 #include "engine/sph/observe/results.h"
 
 #include <math.h>
-#include <stdio.h>
 
 static FIELD_WORDS(reasons, SPH_STOPS, [SPH_STOP_RUNNING] = "running", [SPH_STOP_QUIET] = "quiet",
                    [SPH_STOP_END_TIME] = "end-time", [SPH_STOP_FAULT] = "fault");

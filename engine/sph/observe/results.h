@@ -1,8 +1,7 @@
 /* Results of engine `sph` in addition to struct outcome: table result_sph. A quantity that does not apply is off (NaN).
  * The file that measures a result fills it here: report.c, crater.c, plate.c, and modules for the results that they
  * declare. */
-#ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
-#define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
+#pragma once
 
 #include "engine/ejecta.h"
 #include "engine/sph/modules/structs.h"
@@ -67,5 +66,3 @@ double sph_results_finite(double value);
 /* part / whole; off when the whole is not above 0. The value is not clamped: a share outside of 0..1 is an error of the
  * sums, and `clast check` reports it. Sum a part in the order of the whole, so that rounding does not lift it above. */
 double sph_results_share(double part, double whole);
-
-#endif

@@ -4,8 +4,7 @@
  * boxes a larger one, and so on up to the top; a search goes down this tree. Memory depends on the number of particles
  * alone, not on their extent; particles of very different reach may be mixed; nothing is sorted. A poor order of the
  * particles costs time, never a pair. */
-#ifndef CLAST_ENGINE_SPH_PAIRS_LISTS_H
-#define CLAST_ENGINE_SPH_PAIRS_LISTS_H
+#pragma once
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -116,5 +115,3 @@ bool sph_foreign_part(struct sph_chunk *chunk, size_t per_list, const uint8_t *b
 struct sph_foreign;
 bool sph_foreign_collect(const struct sph_chunks *chunks, size_t n, struct sph_foreign *out);
 void sph_foreign_clear(struct sph_foreign *foreign);
-
-#endif

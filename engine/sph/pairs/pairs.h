@@ -17,8 +17,7 @@
  *
  * With `volume_weights` dv_a/dx_b has m_j/rho_j, and for the same reason sigma_i/rho_i^2 + sigma_j/rho_j^2 becomes
  * (sigma_i + sigma_j)/(rho_i rho_j). */
-#ifndef CLAST_ENGINE_SPH_PAIRS_PAIRS_H
-#define CLAST_ENGINE_SPH_PAIRS_PAIRS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -377,5 +376,3 @@ static inline double sph_spline_slope(double r, double h) {
     return norm * (2.25 * q - 3);
   return q < 2 ? -norm * 0.75 * t * t / q : 0;
 }
-
-#endif

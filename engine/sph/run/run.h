@@ -1,7 +1,6 @@
 /* One run of engine `sph`: bodies, the moving system, the protocol and what it has recorded so far. Inside this folder
  * only. */
-#ifndef CLAST_ENGINE_SPH_RUN_RUN_H
-#define CLAST_ENGINE_SPH_RUN_RUN_H
+#pragma once
 
 #include "engine/engine.h"
 #include "engine/frame.h"
@@ -131,5 +130,3 @@ status sph_snapshot_write(void *run, const char *path, struct error *error);
  * number of flaws of each particle, or NULL. */
 void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particles *particles,
                             const struct sph_fragments *fragments, const uint32_t *flaws);
-
-#endif

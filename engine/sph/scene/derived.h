@@ -1,6 +1,5 @@
 /* Sizes, masses, speeds and times of a scene that follow from the inputs alone. */
-#ifndef CLAST_ENGINE_SPH_SCENE_DERIVED_H
-#define CLAST_ENGINE_SPH_SCENE_DERIVED_H
+#pragma once
 
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/scene/inputs.h"
@@ -57,5 +56,3 @@ status sph_derived_aim(const struct sph_inputs *inputs, struct sph_shape shape[2
                        struct error *error);
 /* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
 double sph_derived_specific_energy(const struct sph_inputs *inputs);
-
-#endif

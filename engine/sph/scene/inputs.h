@@ -1,7 +1,6 @@
 /* The typed scene of engine `sph`: every input of every protocol, one row each in inputs.c or, where it belongs to a
  * module, in the module's NAME.c. SI throughout. */
-#ifndef CLAST_ENGINE_SPH_SCENE_INPUTS_H
-#define CLAST_ENGINE_SPH_SCENE_INPUTS_H
+#pragma once
 
 #include "engine/sph/material/material.h"
 #include "schemas/field.h"
@@ -123,5 +122,3 @@ status sph_inputs_check_given(const void *inputs, const bool *given, struct erro
 status sph_inputs_check(const void *inputs, struct error *error);
 /* How to have fewer particles: "lower fidelity.particles". */
 const char *sph_inputs_check_fewer(const struct sph_inputs *inputs);
-
-#endif

@@ -1,7 +1,6 @@
 /* The moving solid: one force evaluation a step over sorted particles and reused neighbour lists.
  * Benz & Asphaug 1995 [BA95] sections 2-4; corrections and choices are documented where they are made. */
-#ifndef CLAST_ENGINE_SPH_STEP_SYSTEM_H
-#define CLAST_ENGINE_SPH_STEP_SYSTEM_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -257,6 +256,4 @@ struct sph_ranges {
 extern const struct sph_ranges sph_ranges_baseline;
 #ifdef __x86_64__
 extern const struct sph_ranges sph_ranges_v3, sph_ranges_v4;
-#endif
-
 #endif
