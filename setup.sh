@@ -78,6 +78,24 @@ build() { # build PRESET [TARGET]
   fi
 }
 
+# told_since WHAT: keeps a line for the end, with the processor time of all that this shell has waited for, and the time by
+# the clock, since the last call.
+lines= spent=0 clock=$(date +%s)
+told_since() {
+  before=$spent began=$clock clock=$(date +%s)
+  times >"$counted"
+  spent=$(awk 'NR == 2 { gsub(/[ms]/, " "); print int(60 * ($1 + $3) + $2 + $4) }' "$counted")
+  lines="$lines$(printf '\n  %-48s %5d s of processor time %5d s elapsed' "$1" $((spent - before)) $((clock - began)))"
+}
+
+tests() { # tests PRESET WHAT
+  say "tests, $2"
+  code=0
+  ctest --preset "$1" -j "$(nproc)" --output-log "build/$1/tests.log" || code=$?
+  told_since "$(sed -n 's/.* tests failed out of //p' "build/$1/tests.log") tests, $2"
+  return "$code"
+}
+
 # shellcheck disable=SC2086 # lists of packages
 case "${1:-}" in
   packages)
@@ -126,12 +144,16 @@ END
       ctest --preset full -j "$(nproc)"
       exit
     fi
+    counted=$(mktemp)
+    trap 'rm -f "$counted"; say "told apart:$lines"' EXIT
+    told_since "packages"
+    lines=
     build ci
-    say "tests, release build"
-    ctest --preset ci -j "$(nproc)"
+    told_since "build, release"
+    tests ci "release"
     build asan-ubsan
-    say "tests, address and undefined-behaviour sanitizers"
-    ctest --preset asan-ubsan -j "$(nproc)"
+    told_since "build, sanitizers"
+    tests asan-ubsan "address and undefined-behaviour sanitizers"
     ;;
   -h | --help | help) usage 0 ;;
   *) usage 64 >&2 ;;
