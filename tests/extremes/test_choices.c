@@ -4,8 +4,9 @@
  *
  * Nothing is judged by its size, but everything by its bits: choices.txt beside this file pins a hash of all that the
  * runs of a scene and an input give, and another of what the program says of them, beforehand and in the result
- * `warnings`. A line that changes on purpose is written anew by CLAST_RENEW=1. Where the first hash of a line changes,
- * tests/support/golden.h says what else to do; a new row of results changes no hash while it is off. */
+ * `warnings`. Under the sanitizers scenes are left out whose bodies and rules another scene has (again()). A line that
+ * changes on purpose is written anew by CLAST_RENEW=1. Where the first hash of a line changes, tests/support/golden.h
+ * says what else to do; a new row of results changes no hash while it is off. */
 #include "engine/sph/run/run.h"
 #include "tests/support/golden.h"
 #include "tests/support/pinned.h"
@@ -46,6 +47,18 @@ static const struct {
 enum { SMALLEST = sizeof smallest / sizeof *smallest };
 
 static uint64_t walked; /* modules of engine sph that were on in a run */
+
+/* Under the sanitizers: graded bodies, pores and an impact are in gabbro-crater, porous-plate and basalt-sphere, too.
+ */
+static bool again(const char *scene, bool numbers) {
+  return SANITIZED && (strcmp(scene, "porous-ice") == 0 || strcmp(scene, "solid-ice") == 0 ||
+                       (numbers && strcmp(scene, "porous-target") == 0));
+}
+
+/* Under the sanitizers: materials are the same rows with other numbers, and all are tried in basalt-sphere. */
+static bool material_again(const char *scene, const char *path) {
+  return SANITIZED && strstr(path, "material.name") && strcmp(scene, "basalt-sphere") != 0;
+}
 
 /* ---- what is pinned ---- */
 
@@ -203,13 +216,15 @@ static void every_choice_runs(void **state) {
   static const char *const switched[] = {"false", "true", NULL};
   size_t ran = 0;
   for (size_t k = 0; k < SMALLEST; k++) {
+    if (again(smallest[k].scene, false))
+      continue;
     struct scene *scene = small_scene(k);
     for (size_t i = 0; i < scene->kind->inputs->count; i++) {
       const struct field *row = &scene->kind->inputs->rows[i];
       const char *const *choices = row->kind == FIELD_CHOICE || row->kind == FIELD_TEXT ? row->choices
                                    : row->kind == FIELD_BOOLEAN                         ? switched
                                                                                         : NULL;
-      if (!choices)
+      if (!choices || material_again(smallest[k].scene, row->path))
         continue;
       hear();
       for (; *choices; choices++)
@@ -219,7 +234,7 @@ static void every_choice_runs(void **state) {
     scene_free(scene);
   }
   print_message("%zu choices of %d scenes\n", ran, SMALLEST);
-  assert_true(ran > 500);
+  assert_true(ran > (SANITIZED ? 300 : 500));
   for (size_t m = 0; m < SPH_MODULES; m++)
     if (!(walked >> m & 1))
       fail_msg("module %s was never on", sph_modules_at(m)->name);
@@ -245,7 +260,7 @@ static void tell(const struct scene *scene, const char *path, double number) {
 static void every_number_is_told(void **state) {
   (void)state;
   for (size_t k = 0; k < SMALLEST; k++) {
-    if (!smallest[k].numbers)
+    if (!smallest[k].numbers || again(smallest[k].scene, true))
       continue;
     struct scene *scene = small_scene(k);
     const struct field_table *inputs = scene->kind->inputs;
@@ -453,12 +468,12 @@ static void every_input_acts(void **state) {
     a.own = own;
     for (size_t i = 0; i < scene->kind->inputs->count; i++) {
       const struct field *row = &scene->kind->inputs->rows[i];
-      if (!field_is_active(scene->kind->inputs, row, scene->inputs))
+      if (!field_is_active(scene->kind->inputs, row, scene->inputs) || is_idle(smallest[k].scene, row->path))
         continue;
       a.accepted = a.other = 0;
       try_values(&a, row);
       acted += a.other;
-      if (a.other || !a.accepted || is_idle(smallest[k].scene, row->path))
+      if (a.other || !a.accepted)
         continue;
       print_message("%s: %s changes nothing\n", smallest[k].scene, row->path);
       wrong++;
@@ -482,6 +497,8 @@ static void begin_and_end(void *context) {
 
 static void no_run_leaves_memory(void **state) {
   (void)state;
+  if (SANITIZED) /* they see leaks by themselves, and mallinfo2() knows nothing of their allocator */
+    skip();
   for (size_t k = 0; k < SMALLEST; k++) {
     struct scene *scene = small_scene(k);
     pinned_frees(smallest[k].scene, begin_and_end, scene);
@@ -492,7 +509,10 @@ static void no_run_leaves_memory(void **state) {
 static void every_bit_is_pinned(void **state) {
   (void)state;
   fclose(lines);
-  pinned_same("extremes/choices.txt", lines_text, 0);
+  if (SANITIZED)
+    pinned_among("extremes/choices.txt", lines_text);
+  else
+    pinned_same("extremes/choices.txt", lines_text, 0);
   free(lines_text);
 }
 
