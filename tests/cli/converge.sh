@@ -81,9 +81,9 @@ says "marked (!), 12 of 12 runs: coarse" # the scene's own level belongs to two 
 same "$(number ball.db "select count(*) from run")" 12 "runs: 3 + 1 levels, 3 seeds"
 # A scene without scatter: its seeds are equal, which study and plan say; chance is no word there. `estimates` leads to the
 # campaign's quantity, which is no column of it.
-printf '%s\n' 'name: plate' 'scene: porous-plate' 'set: {fidelity.points: 40, piston.speed: 350 m/s}' \
-  'accuracy: {within: 90 %}' 'store: plate.db' >plate.yaml
-expect 0 "$clast" converge plate.yaml --knob points=20,30,40,60 --seeds 3 --within off -j 2
+printf '%s\n' 'name: plate' 'scene: porous-plate' 'set: {fidelity.points: 28, piston.speed: 350 m/s}' \
+  'accuracy: {within: 200 %}' 'store: plate.db' >plate.yaml
+expect 0 "$clast" converge plate.yaml --knob points=20,28,40 --seeds 3 --within off -j 2
 tr "\n" " " <out | grep -q "All seeds of a level are equal: more of them tell no more." || fail "equal seeds: $(cat out)"
 ! grep -q "chance would" out || fail "chance in a study without scatter: $(cat out)"
 expect 0 "$clast" plan plate.yaml --no-trial
@@ -388,7 +388,7 @@ db.commit()
 PY
 expect 0 "$clast" stats one.db --by fidelity.time_step --studies
 grep -Eq ' >= 0\.[0-9]+( |$)' out || fail "no >= in the column of the resolution"
-expect 0 "$clast" run one.yaml --within 1s -j 2
+expect 0 "$clast" run one.yaml --within 300ms -j 2
 says "seeds a point: "; says ' (resolution: grains, settings, time_step)'
 grep -q 'studied at' err && fail "the error of other points"
 # A study of an earlier program has no row of the own level. Then no setting with these grains has a bound or is chosen.
