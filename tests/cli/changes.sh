@@ -47,7 +47,7 @@ prints "ML"
 same "$(python -c "print(max(len(l.rstrip('\n')) for l in open('out')) <= 100)")" True "table of five inputs in 100 columns"
 
 # each campaign has its own state, also when a merge brings a session that was killed
-state() { "$clast" status "$1" --json | python -c "import json, sys; print(*[r['name'] + '=' + r['state'] for r in json.load(sys.stdin)])"; }
+state() { "$toy" status "$1" --json | python -c "import json, sys; print(*[r['name'] + '=' + r['state'] for r in json.load(sys.stdin)])"; }
 cp wide.db killed.db
 sqlite3 killed.db "update session set ended_at = null, outcome = null; delete from run where replicate = 1"
 same "$(state killed.db)" "wide=killed" "a session without an end"
@@ -55,9 +55,9 @@ same "$(state killed.db)" "wide=killed" "a session without an end"
 same "$(state all.db)" "tiny=finished tiny=finished wide=killed" "states after a merge"
 "$clast" merge all.db wide.db >/dev/null 2>&1 || fail "merge again"
 same "$(state all.db)" "tiny=finished tiny=finished wide=finished" "states when the missing runs came"
-slow slow
+waiting slow
 for clock in right "set back"; do
-  "$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
+  "$toy" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
   for _ in $(seq 100); do sleep 0.05; [ "$(state slow.db 2>/dev/null)" = slow=running ] && break; done
   same "$(state slow.db)" "slow=running" "state while it runs, clock $clock"
   kill -TERM $! # a shell script starts background jobs with SIGINT ignored
@@ -87,9 +87,12 @@ for name in energy.kinetic energy_kinetic result_dem_energy_kinetic; do
   grep -q ',energy_kinetic_mean,' out || fail "$name is not energy_kinetic"
 done
 # explain answers for each word that a user meets: keys, columns of the views, words of messages and tables
+# (under sanitizers every tenth of the columns: one piece of code looks all of them up)
 for word in campaign results outcome sph dem vary keep seeds set design limits censored counted surplus interval window ML \
   beta_masses_from_5 result_dem_energy_kinetic largest_fraction_mean \
-  $(sqlite3 tiny.db "select name from pragma_table_info('runs') union select name from pragma_table_info('points')"); do
+  $(sqlite3 tiny.db "select name from (select name, row_number() over (order by name) as n from
+      (select name from pragma_table_info('runs') union select name from pragma_table_info('points')))
+    where $sanitized = 0 or n % 10 = 0"); do
   "$clast" explain "$word" >out 2>err && [ -s out ] || fail "explain does not know $word"
 done
 ok "explain knows every word"

@@ -88,14 +88,14 @@ else
 fi
 
 # one writer: the second gets a message that names the first; readers can read meanwhile
-slow slow
-"$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
+waiting slow
+"$toy" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
 pid=$!
-for i in $(seq 100); do "$clast" status slow.db 2>/dev/null | grep -q slow && break; sleep 0.05; done
-expect 74 "$clast" run slow.yaml --quiet
+for i in $(seq 100); do "$toy" status slow.db 2>/dev/null | grep -q slow && break; sleep 0.05; done
+expect 74 "$toy" run slow.yaml --quiet
 says "$pid"; one_error
-expect 74 "$clast" merge slow.db tiny.db
-expect 0 "$clast" status slow.db
+expect 74 "$toy" merge slow.db tiny.db
+expect 0 "$toy" status slow.db
 prints "slow"
 kill -TERM "$pid"; code=0; wait "$pid" || code=$?
 same "$code" 75 "the first writer was not disturbed"
@@ -103,20 +103,21 @@ same "$code" 75 "the first writer was not disturbed"
 # a full disk: in a separate file system if permitted, otherwise by a limit on file sizes
 expect_full() { [ "$got" -eq 74 ] || fail "exit $got on a full disk"; says "$1"; one_error; ok "exit 74: $2"; }
 mkdir small
-sed -i 's/per_point: [0-9]*/per_point: 6/' slow.yaml
+sed -i 's/20 ms/0 s/' stick.yaml
+sed -i 's/per_point: [0-9]*/per_point: 40/' slow.yaml
 if unshare --mount true 2>/dev/null && unshare --mount sh -c 'mount -t tmpfs -o size=300k tmpfs small' 2>/dev/null; then
   got=0
-  unshare --mount sh -c "mount -t tmpfs -o size=300k tmpfs small && '$clast' run slow.yaml --store small/x.db --quiet >out 2>err; code=\$?; cp small/x.db* . 2>/dev/null; exit \$code" || got=$?
+  unshare --mount sh -c "mount -t tmpfs -o size=300k tmpfs small && '$toy' run slow.yaml --store small/x.db --quiet >out 2>err; code=\$?; cp small/x.db* . 2>/dev/null; exit \$code" || got=$?
   expect_full "small/x.db" "a full disk"
 else
   got=0
-  (trap '' XFSZ; ulimit -f 250; exec "$clast" run slow.yaml --store x.db --quiet >out 2>err) || got=$?
+  (trap '' XFSZ; ulimit -f 250; exec "$toy" run slow.yaml --store x.db --quiet >out 2>err) || got=$?
   expect_full "x.db" "a file that may not grow"
 fi
 rm -f slow.db*
-expect 0 "$clast" run slow.yaml --quiet
+expect 0 "$toy" run slow.yaml --quiet
 bits slow.db >slow.bits
-if [ -s x.db ]; then expect 0 "$clast" run slow.yaml --store x.db --quiet; same_bits x.db slow.bits "after room was made"; else ok "nothing"; ok "committed"; ok "yet"; fi
+if [ -s x.db ]; then expect 0 "$toy" run slow.yaml --store x.db --quiet; same_bits x.db slow.bits "after room was made"; else ok "nothing"; ok "committed"; ok "yet"; fi
 
 # ---- another program holds the store for longer than SQLite waits: the runs go on, and their results wait in memory
 waiting held
