@@ -176,7 +176,7 @@ done
 cat >withheld.yaml <<'YAML'
 name: withheld
 scene: compression
-set: {body.columns: 12, body.rows: 20}
+set: {body.columns: 8, body.rows: 12}
 vary: {loading.strain_end: [2 %, 6 %]}
 seeds: {per_point: 3}
 store: withheld.db
@@ -256,7 +256,7 @@ says "marked (!), 3 of 12 runs: soot: a word of another version of clast"
 cat >idle.yaml <<'YAML'
 name: idle
 scene: disc-explosion
-set: {body.diameter: 14 cm, charge.energy: 6 kJ/m, stop.least_time: 1 ms}
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.least_time: 1 ms}
 vary: {threshold.strain: [2 %, 5 %], contact.friction: [0.1, 0.5]}
 seeds: {per_point: 2}
 YAML
@@ -271,9 +271,9 @@ for name in idle acts alone; do
 done
 ok "inputs without effect"
 
-# Messages send to `clast explain WORD`, also where an input or a result ends in the same word.
+# Messages send to `clast explain WORD`, also where an input or a result ends in the same word (under sanitizers every fifth).
 expect 0 "$clast" explain conditions
-for word in $(sed -n 's/^- \*\*\([a-z]*\)\*\* .*/\1/p' out | sort -u); do
+for word in $(sed -n 's/^- \*\*\([a-z]*\)\*\* .*/\1/p' out | sort -u | awk -v s="$sanitized" 's == 0 || NR % 5 == 0'); do
   "$clast" explain "$word" >said || fail "explain $word"
   grep -q "^- \*\*$word\*\* " said || fail "explain $word does not tell the condition"
 done
