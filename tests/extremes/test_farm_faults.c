@@ -1,12 +1,6 @@
 /* Faults and signals on one machine: after kill -9 of any process at any instant, no process is left behind and the
  * program ends with a clear status. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "tests/support/check.h"
 #include "tests/support/farm_process.h"
 
 static const char *program;

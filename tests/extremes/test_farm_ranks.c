@@ -1,16 +1,10 @@
 /* The farm over MPI ranks, started by mpirun as a user does: same answers, no busy wait, and every way in which a
  * process can be killed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include <poll.h>
 #include <signal.h>
 #include <sys/syscall.h>
 
-#include <cmocka.h>
-
+#include "tests/support/check.h"
 #include "tests/support/farm_process.h"
 
 static const char *program;

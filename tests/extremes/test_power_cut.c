@@ -1,16 +1,10 @@
 /* The store, fields files and restart files after a power cut. A record of all writes and syncs of the program is cut
  * at many instants; tests/support/disk_record.h has the model of the disk. Pass if after each cut the store opens, its
  * check is clean, and all runs are there that were committed before. CLAST_FULL=1: twenty times as many cuts. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "db/store/internal.h"
 #include "schemas/file.h"
 #include "tests/support/campaign_play.h"
+#include "tests/support/check.h"
 #include "tests/support/disk_record.h"
 #include "tests/support/store_checks.h"
 

@@ -1,13 +1,6 @@
 /* The store under kill -9, full disks, missing permissions and readers that keep it open: in each case the committed
  * runs are complete, and the same command computes the rest with the same bits. CLAST_FULL=1 kills ten times as often.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <signal.h>
 #include <sqlite3.h>
 #include <sys/mman.h>
@@ -19,6 +12,7 @@
 
 #include "db/store/internal.h"
 #include "schemas/clock.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 2, K = 2, RUNS = 1500 };

@@ -1,15 +1,9 @@
 /* One flipped bit anywhere in a store: `check` finds it, or no result of a run has changed. CLAST_FULL=1 flips eighty
  * times as many. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include "db/store/internal.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 #ifdef __SANITIZE_ADDRESS__ /* SQLite takes long, and what check finds is the same */

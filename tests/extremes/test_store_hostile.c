@@ -1,18 +1,12 @@
 /* Stores prepared by an attacker: their contents are only data. Each is refused, the message names the foreign objects,
  * and none of their SQL is run when the store is read, written or merged. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include <sys/stat.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 /* Changes a store as any program could. writable_schema lets SQL replace the text of a table, like a binary editor. */

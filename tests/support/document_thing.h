@@ -1,13 +1,6 @@
 /* A table of a few rows of all kinds, and the report of a document that is read with it. */
 #pragma once
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +10,7 @@
 #include <unistd.h>
 
 #include "schemas/document.h"
+#include "tests/support/check.h"
 
 struct thing {
   double length, limit, speed;

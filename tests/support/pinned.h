@@ -4,15 +4,12 @@
 
 #include <malloc.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+
+#include "tests/support/check.h"
 
 /* Words that blanks part. Two numbers may differ by `tolerance` of the larger one. */
 __attribute__((unused)) static bool pinned_line(char *pinned, char *now, double tolerance) {

@@ -2,19 +2,15 @@
 #pragma once
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/dem/dem.h"
 #include "engine/scene.h"
 #include "engine/sph/sph.h"
+#include "tests/support/check.h"
 
 #define UNUSED __attribute__((unused))
 

@@ -2,17 +2,13 @@
 #pragma once
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
+#include "tests/support/check.h"
 
 #define CASE_UNUSED __attribute__((unused))
 

@@ -10,21 +10,16 @@
 #pragma once
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h> /* after what it needs */
 
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
+#include "tests/support/check.h"
 
 #define UNUSED __attribute__((unused))
 

@@ -1,10 +1,4 @@
 /* Which settings and how many seeds reach an accuracy: known answers from invented studies. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +7,7 @@
 #include "analysis/statistics/statistics.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/converge/ladder.h"
+#include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;

@@ -1,11 +1,5 @@
 /* Designs: known values, uniformity, strata of Latin hypercubes, Sobol numbers against GSL, laws inside their bounds.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_qrng.h>
 #include <math.h>
@@ -15,6 +9,7 @@
 
 #include "campaign/design/design.h"
 #include "schemas/unit.h"
+#include "tests/support/check.h"
 
 static const struct field real_row = {.path = "x",
                                       .kind = FIELD_REAL,

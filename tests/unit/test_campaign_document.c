@@ -1,11 +1,5 @@
 /* Campaign documents: the meaning of good ones and the errors of bad ones. Every error has the line, the path and the
  * remedy. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +8,7 @@
 #include "campaign/design/design.h"
 #include "campaign/document/campaign.h"
 #include "campaign/scheduler/scheduler.h"
+#include "tests/support/check.h"
 
 #define HEAD "name: t\nscene: disc-explosion\n"
 

@@ -1,17 +1,12 @@
 /* The driver against a real store, with a farm played by the test: same bits for any slots, order and interruptions;
  * resume, growth, attempts, the failure limit, surplus, fields. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <signal.h>
 #include <sys/wait.h>
 
 #include "analysis/analysis.h"
 #include "campaign/terminal/progress.h"
 #include "tests/support/campaign_play.h"
+#include "tests/support/check.h"
 
 static char folder[64];
 static const char *in(const char *name) {

@@ -1,15 +1,10 @@
 /* Progress into a file that is no terminal, and the bar's redraws: how often, how long, what they say. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/terminal/progress.h"
+#include "tests/support/check.h"
 
 static struct progress_state of(int64_t done) {
   return (struct progress_state){.done = done,

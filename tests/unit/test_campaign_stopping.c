@@ -1,11 +1,5 @@
 /* The stopping rule uses complete prefixes: it is unbiased where "the first n that finished" is not. It never decides
  * before its minimum, grows by its batch and ends at its cap. The cost model learns. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -14,6 +8,7 @@
 #include "campaign/design/design.h"
 #include "campaign/scheduler/point.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 static double normal(uint64_t seed, uint64_t item, uint64_t draw) {
   double u = random_draw(seed, RANDOM_RESAMPLE, item, 2 * draw),

@@ -1,10 +1,4 @@
 /* Knobs name inputs that exist, ladders are ordered and have their reference, and findings are kept in the store. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +10,7 @@
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
 #include "engine/dem/run/run.h"
+#include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;

@@ -1,14 +1,9 @@
 /* Convergence studies of exponents: mean, interval and bias of a level are those of the pooled exponent of its runs,
  * and a difference that was put into the store is found. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "analysis/analysis.h"
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
+#include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
 enum { SEEDS = 8, FRAGMENTS = 60, LEVELS = 2 };

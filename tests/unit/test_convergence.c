@@ -1,14 +1,9 @@
 /* Known answers of the statistics of a convergence study: bias, break-even, gain, frontier. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 
 #include "analysis/analysis.h"
 #include "analysis/statistics/convergence.h"
+#include "tests/support/check.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

@@ -1,10 +1,4 @@
 /* Cost of runs: the remaining time of a campaign, and the time of a whole run predicted from a coarse one. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +6,7 @@
 #include "analysis/analysis.h"
 #include "campaign/scheduler/point.h"
 #include "campaign/scheduler/scheduler.h"
+#include "tests/support/check.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

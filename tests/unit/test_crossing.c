@@ -1,14 +1,9 @@
 /* The crossing of a level: likelihoods, intervals and next places by hand, and every kind of answer. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 
 #include "analysis/analysis.h"
 #include "analysis/inference/crossing.h"
+#include "tests/support/check.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

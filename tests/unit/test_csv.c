@@ -1,14 +1,9 @@
 /* The CSV reader and SHA-256: known answers and refusals. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <string.h>
 
 #include "schemas/csv.h"
 #include "schemas/text.h"
+#include "tests/support/check.h"
 
 static struct error error;
 

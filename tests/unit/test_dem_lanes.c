@@ -1,13 +1,7 @@
 /* Quotients without the divider against divisions, bit by bit: lanes.h, class v4. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "engine/cpu_class.h"
 
@@ -18,6 +12,7 @@
 #ifdef __AVX512F__ /* clang leaves the line before out: then a quotient is a division */
 #define LANES 8
 #include "engine/dem/step/lanes.h"
+#include "tests/support/check.h"
 
 enum { RANDOM, RECIPROCAL, MIDDLE, KINDS, BLOCKS = 400000 };
 

@@ -1,13 +1,8 @@
 /* Differences of means against values computed by hand and by numerical integration of Student's density. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 
 #include "analysis/statistics/statistics.h"
+#include "tests/support/check.h"
 
 static void pairs_are_used(void **state) {
   (void)state;

@@ -1,15 +1,10 @@
 /* The dip of samples with known dips, and how often chance makes a dip. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 /* The definition, by all pairs and triples of knots. A distribution function G is within d of F at both sides of every
  * jump, convex below the mode x[last] and concave above it, where it may jump. Side -1 is the upper part, reversed. */

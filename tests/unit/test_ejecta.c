@@ -1,16 +1,10 @@
 /* Ejecta over their speed: bins, a power law, the table of a store, its means, merging, damage, and stores of
  * version 4. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 static void near(double got, double want, double relative, const char *what) {

@@ -1,14 +1,9 @@
 /* The standard rows of a run: windows in mean grain masses, dust and the largest left out, one headline. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
+#include "tests/support/check.h"
 
 /* Few different masses tell no exponent, however many fragments there are: of one run, of runs together, and of what is
  * left without one run. */

@@ -1,16 +1,10 @@
 /* Frames: complete ones are received unchanged however the stream is cut; incomplete and foreign bytes are detected.
  * Jobs: handles. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/farm/farm_private.h"
+#include "tests/support/check.h"
 
 static void append(struct farm_bytes *bytes, uint64_t handle, size_t size) {
   uint8_t *payload = malloc(size + 1);

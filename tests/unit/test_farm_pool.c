@@ -1,11 +1,4 @@
 /* The farm on one machine: every way a task can end, in both modes, exactly once each. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <dirent.h>
 #include <malloc.h>
 #include <stdatomic.h>
@@ -14,6 +7,7 @@
 #include <sys/wait.h>
 
 #include "schemas/clock.h"
+#include "tests/support/check.h"
 #include "tests/support/farm_tasks.h"
 
 static struct farm *start(struct farm_options options) {

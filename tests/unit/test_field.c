@@ -1,17 +1,11 @@
 /* Field tables: defaults, finding, conditions, setting and parsing with their messages, JSON, identity, bytes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "schemas/field.h"
 #include "schemas/text.h"
+#include "tests/support/check.h"
 
 struct thing {
   double length, limit, angle;

@@ -1,17 +1,11 @@
 /* Tables that contain tables: paths, places, conditions, defaults and order of the rows, and tables made at run time.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "schemas/field.h"
+#include "tests/support/check.h"
 
 /* Two bodies of one kind, each of a material; a module has inputs in two sections. */
 struct rock {

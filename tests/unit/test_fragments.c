@@ -1,16 +1,12 @@
 /* Union-find against a flood fill on random graphs; the mechanics of a fragment against explicit sums. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/fragments.h"
 #include "engine/outcome.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { N = 60 };
 

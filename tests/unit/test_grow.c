@@ -1,14 +1,9 @@
 /* Growing arrays: their contents stay, they double, and one large request is met in one step. Aligned ones keep only as
  * many elements as the caller names. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <stdlib.h>
 
 #include "engine/grow.h"
+#include "tests/support/check.h"
 
 static void items_stay_and_the_room_doubles(void **state) {
   (void)state;

@@ -1,12 +1,7 @@
 /* The algebra of fits against closed forms: linear models with normal errors, whose posteriors are known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "analysis/analysis.h"
 #include "analysis/inference/inference.h"
+#include "tests/support/check.h"
 #include "tests/support/inference_cases.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

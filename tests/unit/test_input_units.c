@@ -2,17 +2,12 @@
  * and a condition names a row and values of it. No engine has an integer input with a unit so far, so a fault that
  * concerns integers only is not seen here; test_field.c has such a row. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/engine.h"
+#include "tests/support/check.h"
 
 /* Has the row a unit? Answered from the row itself, not with the reader's own rule. */
 static bool has_unit(const struct field *row) {

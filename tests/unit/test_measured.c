@@ -1,10 +1,4 @@
 /* Measured spectra: the contents of files, refusals, and distances with known answers. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +6,7 @@
 #include <unistd.h>
 
 #include "analysis/statistics/statistics.h"
+#include "tests/support/check.h"
 
 static const struct spectrum_size no_size = {0, 3};
 static const char path[] = "test-measured.csv";

@@ -1,17 +1,13 @@
 /* Meshes: the result of each format, volumes and insides against plain geometry, and every refusal with its line. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "engine/mesh/mesh.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 /* A unit cube from (1, 2, 3) on, of squares, with every form of a corner. */
 static const char cube[] = "# cube\no box\nmtllib a.mtl\n"

@@ -1,16 +1,11 @@
 /* Documents of measurements: the meaning of good ones and the errors of bad ones. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <string.h>
 
 #include "campaign/document/observed.h"
 #include "campaign/fit/fit.h"
 #include "schemas/text.h"
+#include "tests/support/check.h"
 
 #define HEAD "name: t\nsource: a test\n"
 #define SHOT HEAD "shots:\n  - "

@@ -1,13 +1,9 @@
 /* Option tables: parsing, defaults, ranges, the nearest name, help that mentions every option. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "campaign/commands/commands.h"
+#include "tests/support/check.h"
 
 struct options {
   bool loud;

@@ -1,17 +1,11 @@
 /* The data of a page against the store that it is made from: all statistics, a sample of the runs, no names. Also the
  * file that contains the data. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include "analysis/report/page.h"
 #include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 2, K = 2 };

@@ -1,11 +1,5 @@
 /* Pictures are complete files of the right kind with ink in the right places; an error leaves no file behind. With a
  * folder as argument the pictures stay there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <cairo.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,6 +11,7 @@
 #include "analysis/analysis.h"
 #include "analysis/pictures/picture.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 #include "tests/support/sweep.h"
 
 static char folder[256];

@@ -1,15 +1,10 @@
 /* Fragments side by side: none hides another, the heaviest is kept; and the visible part of fragments in a heap. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 
 #include "analysis/pictures/picture_layout.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { PIECES = 30, EACH = 40, DISCS = PIECES * EACH };
 

@@ -1,13 +1,8 @@
 /* A point read from a store: its runs in order, without those that do not count; its estimates and picture. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "analysis/analysis.h"
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 enum { RUNS = 8, FAILED = 3 };

@@ -1,12 +1,7 @@
 /* Pools of runs: by point, by an input, by a condition; their order, labels, fragments and values. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "analysis/analysis.h"
 #include "db/ask/ask.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 enum { RUNS = 3 };

@@ -1,12 +1,7 @@
 /* The generator's published known-answer vectors, our mapping of (seed, purpose, item, draw) onto it (pinned, because
  * it is part of the meaning of a seed) and the range of the uniforms. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"

@@ -1,10 +1,4 @@
 /* Finite-size scaling of made-up runs with known exponents, and of runs that have none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +6,7 @@
 #include "analysis/analysis.h"
 #include "analysis/inference/scaling.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { SIZES = 5, POINTS = 11, SEEDS = 20, ALL = SIZES * POINTS * SEEDS };
 static const double CRITICAL = 14, NU = 0.8, BETA = 0.2, GAMMA = 1.6, CUTOFF = 1.8; /* 2 beta + gamma = d */

@@ -1,16 +1,11 @@
 /* Scatter of a sample: known quantiles, modes, numbers of runs; coverage of the intervals; the split of a variance. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 static double normal(uint64_t a, uint64_t b, uint64_t c) {
   return sqrt(-2 * log1p(-random_draw(21, a, b, 2 * c))) * cos(2 * M_PI * random_draw(21, a, b, 2 * c + 1));

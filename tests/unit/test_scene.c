@@ -1,12 +1,5 @@
 /* Scenes: built-in documents, reading with the engine's table, overrides, checks, identity; the hash behind it against
  * known answers. The registry is replaced by a tiny engine of this test: scene.c is compiled in here. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +9,7 @@
 #include "engine/scene.h"
 
 #include "engine/scene.c" /* with engine_find replaced */
+#include "tests/support/check.h"
 #undef engine_find
 
 struct tiny {

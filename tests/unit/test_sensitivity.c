@@ -1,10 +1,4 @@
 /* Sobol indices of functions with known ones, with and without seeds; elementary effects of a plane; intervals. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +7,7 @@
 #include "analysis/statistics/statistics.h"
 #include "campaign/design/design.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { MOST = 8 };
 

@@ -1,15 +1,10 @@
 /* Bin edges are exact: a mass on an edge is in the bin above, the double before it in the bin below. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
+#include "tests/support/check.h"
 
 static void edges_are_exact(void **state) {
   (void)state;

@@ -1,16 +1,11 @@
 /* The artificial stress of one particle: against its definition, and in every CPU class against plain C. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
+#include "tests/support/check.h"
 #include "tests/support/noise.h"
 
 static const char *const classes[] = {"baseline", "v3", "v4"};

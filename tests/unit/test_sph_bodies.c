@@ -1,14 +1,10 @@
 /* Bodies before the first step: masses, ids, placement, overlap, motion, grips, damped sides; refusals. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/sph/body/bodies.h"
+#include "tests/support/check.h"
 
 static struct sph_body sphere(double radius, double particles, double density) {
   return (struct sph_body){.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},

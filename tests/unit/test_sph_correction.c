@@ -2,15 +2,10 @@
  * s(t) = t^2 (3 - 2t), t from 0 at a mean eigenvalue of 0.1 (a determinant over its cube of 0.3) to 1 at 0.2 (at 0.6),
  * and both multiplied, B is s times the inverse plus 1 - s times 1. s(1/4) = 5/32, s(1/2) = 1/2, s(3/4) = 27/32. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "engine/sph/pairs/pairs.h"
+#include "tests/support/check.h"
 
 /* Moments are diagonal in axes turned relative to the coordinates; so is B. Eigenvalues size (1, 1 + d, 1 - d): the
  * mean is `size`, the determinant over its cube 1 - d^2. */

@@ -1,14 +1,9 @@
 /* Craters: holes of known size in a lattice, ejecta, closed pores and their shares. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/sph/observe/observe.h"
+#include "tests/support/check.h"
 
 enum { SIDE = 60, HIGH = 30 };
 static const double dx = 1e-3;

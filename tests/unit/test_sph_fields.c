@@ -2,16 +2,11 @@
  * ParaView open; truncated, changed and foreign files are refused. Also pictures from such files: with a folder as
  * argument they stay there. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include <cairo.h>
 #include <hdf5.h>
@@ -22,6 +17,7 @@
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/inputs.h"
 #include "engine/sph/sph.h"
+#include "tests/support/check.h"
 #include "tests/support/sweep.h"
 
 static char folder[256];

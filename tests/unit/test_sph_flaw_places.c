@@ -1,18 +1,14 @@
 /* Flaws as points in a body: uniform, owned by the nearest particle, the same at every resolution; ends without flaws;
  * graded bodies; the law's scatter and its extremes. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/body/kd_tree.h"
+#include "tests/support/check.h"
 
 static struct sph_body sphere(double particles) {
   return (struct sph_body){.shape = {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 0.03},

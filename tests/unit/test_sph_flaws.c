@@ -1,14 +1,10 @@
 /* Explicit flaws against the Weibull law: ranked thresholds exactly, poisson by its known scatter, extremes without
  * overflow. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "analysis/statistics/statistics.h"
+#include "tests/support/check.h"
 #include "tests/support/grady_kipp.h"
 
 static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_t n) {

@@ -1,17 +1,13 @@
 /* Fragments of SPH particles: against brute force over all pairs; each rule of BA95 section 4.4 separately; spin of
  * asymmetric fragments; particles that are far away or not finite; no particles. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/outcome.h"
 #include "engine/random.h"
 #include "engine/sph/observe/observe.h"
+#include "tests/support/check.h"
 
 static double draw(uint64_t seed, size_t i, uint64_t k) {
   return random_draw(seed, 900, i, k);

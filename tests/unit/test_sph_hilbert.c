@@ -1,13 +1,8 @@
 /* The order of particles along Hilbert's curve. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/sph/body/kd_tree.h"
+#include "tests/support/check.h"
 #include "tests/support/noise.h"
 
 enum { SIDE = 12, COUNT = SIDE * SIDE * SIDE, GRID = 16, CELLS = GRID * GRID * GRID };

@@ -1,11 +1,7 @@
 /* Inputs and materials of engine sph: tables, defaults from a named material, refusals and their remedies. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/builtin.h"
 #include "engine/scene.h"
@@ -13,6 +9,7 @@
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 #include "schemas/document.h"
+#include "tests/support/check.h"
 
 static void complete(void *inputs, const bool *given) {
   sph_inputs_complete(inputs, given);

@@ -1,15 +1,11 @@
 /* Lattices: numbers, neighbours, density sums, moments; periodic fits; irregular and graded points. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/kd_tree.h"
+#include "tests/support/check.h"
 
 static const struct sph_shape sphere = {.kind = SPH_SHAPE_SPHERE, .centre = {1, -2, 3}, .radius = 0.5};
 static const struct sph_shape rod = {.kind = SPH_SHAPE_CYLINDER,

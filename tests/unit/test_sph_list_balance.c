@@ -1,17 +1,12 @@
 /* Pairs move between lists so that most lists fill whole batches: no pair is lost or appears twice, and few lanes stay
  * empty. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
+#include "tests/support/check.h"
 #include "tests/support/noise.h"
 
 enum { SIDE = 11, MOST = SIDE * SIDE * SIDE };

@@ -1,13 +1,8 @@
 /* Bodies from shape files. A box as a mesh must equal a box: the same particles to rounding, distances, gaps and places
  * of impact. In bodies that only a mesh can describe, flaws are uniform, and a projectile starts outside of them. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/mesh/mesh.h"
 #include "engine/random.h"
@@ -15,6 +10,7 @@
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/scene/derived.h"
+#include "tests/support/check.h"
 
 static const char box_file[] = "v 0 0 0\nv 0 0 3\nv 0 2 0\nv 0 2 3\nv 1 0 0\nv 1 0 3\nv 1 2 0\nv 1 2 3\n"
                                "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";

@@ -1,18 +1,13 @@
 /* Lists of neighbours: against brute force, shared by several particles, invalid after motion, bounded in memory. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/support/allocated.h"
+#include "tests/support/check.h"
 #include "tests/support/pair_cloud.h"
 
 static void swap_particles(struct cloud *c, size_t i, size_t j) {

@@ -1,17 +1,12 @@
 /* The sums of the pair loop: kernels of every CPU class and precision against plain C, conservation, and fields whose
  * gradient is known. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
+#include "tests/support/check.h"
 #include "tests/support/pair_cloud.h"
 #include "tests/support/pair_sums.h"
 

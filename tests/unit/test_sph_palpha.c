@@ -2,16 +2,11 @@
  * rate form of the papers integrated finely (written here again), paths of loading and unloading, jumps, the solid's
  * limit. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/random.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
+#include "tests/support/check.h"
 
 static const struct sph_material aluminium = {.density = 2700,
                                               .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};

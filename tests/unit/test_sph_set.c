@@ -1,13 +1,8 @@
 /* Sets of columns and modules: of any size, also beyond a word. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/sph/modules/module.h"
+#include "tests/support/check.h"
 
 enum { MOST = 130 };
 static const size_t sizes[] = {1, 63, 64, 65, 128, MOST};

@@ -1,15 +1,11 @@
 /* True shapes: volumes, places and distances against each other and against plain geometry; gaps, overlaps, misses. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/random.h"
 #include "engine/sph/body/bodies.h"
+#include "tests/support/check.h"
 
 static const struct sph_shape sphere = {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 2};
 static const struct sph_shape rod = {.kind = SPH_SHAPE_CYLINDER,

@@ -1,11 +1,6 @@
 /* The pinned values are exit codes that scripts branch on: a change here is a change of the program's interface. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include "schemas/status.h"
+#include "tests/support/check.h"
 
 static void values_are_sysexits(void **state) {
   (void)state;

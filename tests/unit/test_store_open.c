@@ -1,11 +1,4 @@
 /* Which stores open, which are refused with which message, which are migrated, and who may write. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <signal.h>
 #include <sqlite3.h>
 #include <sys/resource.h>
@@ -15,6 +8,7 @@
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 static void populated(const char *path) {

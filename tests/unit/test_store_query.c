@@ -1,17 +1,11 @@
 /* Queries of a store: views against numbers computed here, reading statements only, grouping, canned queries, our
  * aggregates. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/statistics/statistics.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 3, K = 2, RUNS = 25 };

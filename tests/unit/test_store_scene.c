@@ -1,14 +1,8 @@
 /* A store of real scenes: the scene stored with a point is enough to compute the identity of every run again. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include "analysis/statistics/statistics.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 static void line(void *context, const char *text) {

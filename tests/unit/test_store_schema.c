@@ -1,17 +1,11 @@
 /* schemas/results.sql is the schema of a store, every column of it is documented, and the names in our SQL text are
  * those of the field tables. `test_store_schema print` prints the schema: the build target schemas writes the file with
  * it. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include "db/store/schema.h"
 #include "db/store/views.h"
+#include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
 #define REMEDY "if that is on purpose: cmake --build --preset release --target schemas, and commit the file"

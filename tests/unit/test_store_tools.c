@@ -1,15 +1,9 @@
 /* check, merge, export, dump. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 #include <sys/stat.h>
 
 #include "db/store/internal.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 static struct store *writer(const char *path) {

@@ -1,15 +1,9 @@
 /* Writing and reading back: every column, blobs, running sums, batches, identities, surplus, views. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <sqlite3.h>
 
 #include "analysis/statistics/statistics.h"
 #include "db/store/internal.h"
+#include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
 static struct store *writer(const char *path) {

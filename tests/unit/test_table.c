@@ -1,16 +1,12 @@
 /* One set of rows, three formats: they agree, and the hard cells (NaN, quotes, bad UTF-8, many rows) come out right. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "campaign/terminal/table.h"
 #include "schemas/csv.h"
 #include "schemas/text.h"
+#include "tests/support/check.h"
 
 static char *print_rows(enum table_format format, int rows) {
   char *text = NULL;

@@ -2,19 +2,15 @@
  * of any tessellation of a body: it fills the rectangle, neighbours share vertices to the last bit, disorder 0 is the
  * square lattice. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <cmocka.h>
 
 #include <libqhull_r/qhull_ra.h>
 
 #include "engine/dem/lattice/tessellation.h"
+#include "tests/support/check.h"
 
 /* ---- the reference: areas and sides by Delaunay triangles of qhull; circumcentres in long double ---- */
 

@@ -1,16 +1,10 @@
 /* Texts made of parts stay in their arrays, end behind a whole character, and show no more digits than people read. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "schemas/text.h"
+#include "tests/support/check.h"
 
 /* What does not fit is cut, whatever is appended later, and the bytes behind the array stay as they are. */
 static void test_append_stays_in_its_array(void **state) {

@@ -1,15 +1,10 @@
 /* Text plots: points are in their decade's column, bars on both sides, lines fit the terminal. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
+#include "tests/support/check.h"
 
 static char *plot(int columns, bool unicode, const struct picture_series *series) {
   char *text = NULL;

@@ -1,16 +1,11 @@
 /* Threads that the system refuses: fewer are used, and the process goes on. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "engine/threads.h"
+#include "tests/support/check.h"
 
 static size_t address_space(void) {
   unsigned long pages = 0;

@@ -1,14 +1,9 @@
 /* The two errors of a mean in words. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include <math.h>
 #include <stdio.h>
-#include <cmocka.h>
 
 #include "campaign/terminal/table.h"
+#include "tests/support/check.h"
 
 static void seeds(void **state) {
   (void)state;

@@ -1,18 +1,12 @@
 /* Units: known conversions (exact doubles: a decimal shift must not round), every error message to the letter, and the
  * agreement of spellings that mean the same. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "schemas/field.h"
 #include "schemas/unit.h"
+#include "tests/support/check.h"
 
 static void values_are_exact(void **state) {
   (void)state;

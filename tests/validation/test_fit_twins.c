@@ -1,13 +1,9 @@
 /* Twin experiments: inputs drawn from the priors, one specimen "measured" by the model itself, and a fit that does not
  * know them. The 90 % intervals must hold the inputs in about 90 of 100 cases. See fit_twins.md. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-#include <cmocka.h>
 
 #include "analysis/analysis.h"
+#include "tests/support/check.h"
 #include "tests/support/inference_cases.h"
 
 /* Two results of a body that breaks up, as functions of two inputs: the largest fragment's share, a curve from 1 to 0

@@ -5,21 +5,16 @@
  * Quick: 2 seeds. CLAST_FULL=1: 10 seeds. Each seed is shown, and the ratio with its
  * interval. The criterion applies to the mean, not to every seed (a seed with the opposite result is a finding). */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/fragments.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
 #include "engine/sph/observe/results.h"
 #include "engine/sph/run/run.h"
+#include "tests/support/check.h"
 
 static bool full(void) {
   const char *text = getenv("CLAST_FULL");

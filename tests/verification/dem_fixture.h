@@ -3,18 +3,13 @@
 #pragma once
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/dem/step/system.h"
 #include "engine/dem/step/system_layout.h"
+#include "tests/support/check.h"
 
 /* The default scene without breaking, and with a threshold of its own for the angle. */
 static inline struct dem_inputs fixture_inputs(void) {

@@ -1,12 +1,6 @@
 /* Estimators against synthetic spectra whose exponent is known. The test must reproduce the biases measured before this
  * program was written (true exponent 2.0, 200 samples): least squares is biased, maximum likelihood is not. Every
  * tolerance is a Monte-Carlo error computed here, times four. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +8,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { SAMPLES = 200, MOST = 1001 };
 enum law { PURE, CUTOFF_AT_100, WITH_GIANT };

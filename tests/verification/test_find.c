@@ -2,12 +2,6 @@
  * `clast find` does. Page: find.md.
  *
  * Quick: 40 searches a law. CLAST_FULL=1: 1000. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +12,7 @@
 #include "analysis/inference/crossing.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { MOST_RUNS = 400, GRID = 10, GRID_RUNS = 20, MOST = 1000 };
 static const double WITHIN = 0.05;

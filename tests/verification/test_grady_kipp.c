@@ -6,13 +6,9 @@
  * isolated law is met only where 0.7 < c_g t_f / R_s < 5, and the particle form differs from it by construction: that
  * is why the table, not the law, is the target. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
+#include "tests/support/check.h"
 #include "tests/support/grady_kipp.h"
 
 enum { PARTICLES = 50000, STEPS = 400 };

@@ -4,12 +4,6 @@
  *
  * Quick: 100 to 600 samples a row, 80 discs of 200 grains. CLAST_FULL=1: 4000 samples, more laws. CLAST_STORE=FILE
  * draws from the first point of that store instead of the discs. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +13,7 @@
 #include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 #include "tests/support/run_case.h"
 
 enum { MOST_RUNS = 1000, MOST_FRAGMENTS = 400, METHODS = 2, SIZES = 4, MOST_MASSES = MOST_RUNS * MOST_FRAGMENTS };

@@ -5,12 +5,6 @@
  *
  * Quick: 8 ladders a row, judged over all powers. CLAST_FULL=1: 250 a row, 1000 a law, each power judged; the table of
  * limits.md. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +14,7 @@
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 #include "tests/support/run_case.h"
 
 /* POWER: s^p. OPPOSED: s^p - b s^q. BREAKS: s^p from the break on; coarser levels all have the value at the break,

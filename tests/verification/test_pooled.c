@@ -1,11 +1,5 @@
 /* Pooling over runs: each run bounded by its own largest fragment gives the true exponent back, with a giant in every
  * run too; the interval from resampling runs has its nominal coverage; cut-offs are found if and only if they exist. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +7,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { RUNS = 30, MOST = 101 };
 

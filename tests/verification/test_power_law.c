@@ -1,10 +1,4 @@
 /* Exact answers: stationary likelihoods for any exponent, the normalisation against closed forms, invariances. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_sf_gamma.h>
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +6,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 /* The sample mean of a cut exponential, straight from its definition; the fit must return the rate. */
 static double exact_mean(double k, double span) {

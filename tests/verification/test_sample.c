@@ -1,11 +1,5 @@
 /* Summaries against exact numbers; coverage of intervals, of stopping rules and of the jackknife against their nominal
  * level, within Monte-Carlo errors (sqrt(p(1-p)/N), four of them). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +7,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 static double normal(uint64_t stream, uint64_t sample, uint64_t i) {
   uint64_t bits[4];

@@ -2,12 +2,6 @@
  *
  * Quick: small sizes, few samples. CLAST_FULL=1: the widths asked for (20 minutes), and other lattices. Of a size L the
  * samples are as 1/L of those of the smallest size; CLAST_SEEDS=n: n of those, whatever the widths. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -19,6 +13,7 @@
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
+#include "tests/support/check.h"
 
 enum { GRID = 13, MOST_SIZES = 6, REPEATS = 20, LEAST_HELD = 17 };
 

@@ -2,12 +2,6 @@
  *
  * Quick: 20 sets of points a case, of 20 and 50 points. CLAST_FULL=1: 1000, of 500 points 250. CLAST_CASES=1 prints
  * every case that holds less than 0.93. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_qrng.h>
 #include <math.h>
@@ -18,6 +12,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 
 enum { MOST_FAILED = 20, MOST_INPUTS = 8, MOST_POINTS = 500, MOST_SEEDS = 4, SETS = 1000, VALUES = 12 };
 

@@ -2,12 +2,6 @@
  * exploding discs. A sample counts against a law when its interval misses the mean and is not called weak.
  *
  * Quick: 1000 samples a row, 100 discs. CLAST_FULL=1: 20 000 samples, 300 discs. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,6 +10,7 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
+#include "tests/support/check.h"
 #include "tests/support/run_case.h"
 
 /* JUDGED: coverage of 0.92, or nine of ten misses are weak. BELL: also few false marks, and not much wider than

@@ -1,13 +1,7 @@
 /* The jump-condition solver gives the known plateaus (sph_palpha_jump.md), and the engine's (alpha, P) lies on them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "engine/sph/material/palpha.h"
 #include "palpha_exact.h"
+#include "tests/support/check.h"
 
 static void near(double got, double want, double tolerance, const char *what) {
   if (!(fabs(got - want) <= tolerance))
