@@ -18,7 +18,7 @@ function scene(stores) {
 }
 
 function varied(store) {
-  return store.axes.map((axis) => {
+  return store.inputs.map((axis) => {
     const given = store.points.map((point) => point[axis.column_name]).filter((value) => value !== null), without = store.points.length - given.length;
     const values = [...new Set(given.map((value) => inUnit([store], axis.column_name, value)))];
     const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
@@ -81,7 +81,7 @@ function one(store) {
       ['by', programs(store)],
       ['left out here', thinned(store)],
     ]),
-    store.axes.length ? table('Inputs that were varied', ['input', 'values', 'unit', 'meaning'], varied(store)) : element('p', {}, 'No input was varied.'),
+    store.inputs.length ? table('Inputs that were varied', ['input', 'values', 'unit', 'meaning'], varied(store)) : element('p', {}, 'No input was varied.'),
     failures(store),
     ...campaigns.map((c) => element('details', {}, element('summary', {}, `The campaign file of ${c.name}`), element('pre', {}, c.document))));
 }

@@ -2,7 +2,7 @@
 import {View, parse} from 'vega';
 import {compile} from 'vega-lite';
 import {expressionInterpreter} from 'vega-interpreter';
-import {command, download, element, fill} from './elements.js';
+import {commands, download, element, fill} from './elements.js';
 import {csv, raisedIn} from './words.js';
 
 // Okabe and Ito's colours, told apart without colour vision; marks and dashes differ, too.
@@ -13,15 +13,19 @@ export const DASHES = [[1, 0], [6, 3], [2, 2], [8, 3, 2, 3], [4, 4], [10, 4]];
 const CONFIG = {
   font: 'system-ui, "DejaVu Sans", sans-serif',
   axis: {labelFontSize: 12, titleLimit: 330, titleFontSize: 13, titleFontWeight: 'normal', gridOpacity: 0.5, labelOverlap: true, labelSeparation: 10},
-  legend: {labelFontSize: 12, titleFontSize: 13, titleFontWeight: 'normal', labelLimit: 260, titleLimit: 260},
+  legend: {labelFontSize: 12, titleFontSize: 13, titleFontWeight: 'normal', titleLimit: 260},
   view: {stroke: '#c8c8c8'},
   range: {category: COLOURS},
 };
 
 const views = new Map(); // by figure
 
+// Pixels of a chart with a line of the legend for each name.
+export const heightWith = (names) => 340 + (names.length > 1 ? 16 * names.length : 0);
+
 // Draws a figure: the chart, a caption, and what can be taken away. about: {name, description, caption, command, columns,
-// rows, keys}; columns and rows are the numbers that the chart shows; with keys it takes the keyboard's focus.
+// rows, keys}; command: one, or one of each store; columns and rows are the numbers that the chart shows; with keys it takes
+// the keyboard's focus.
 export async function draw(figure, spec, about) {
   views.get(figure)?.finalize();
   views.delete(figure);
@@ -29,10 +33,10 @@ export async function draw(figure, spec, about) {
   const tools = element('div', {class: 'tools'},
     element('button', {type: 'button', click: async () => download(`${about.name}.svg`, 'image/svg+xml', await views.get(figure).toSVG())}, 'SVG'),
     element('button', {type: 'button', click: () => download(`${about.name}.csv`, 'text/csv', csv(about.columns, about.rows))}, 'CSV'),
-    about.command ? command(about.command) : null);
+    about.command ? commands([about.command].flat()) : null);
   fill(figure, chart, element('figcaption', {}, about.caption), tools);
   const width = Math.max(240, figure.clientWidth);
-  const whole = {$schema: 'https://vega.github.io/schema/vega-lite/v6.json', background: 'white', config: CONFIG,
+  const whole = {$schema: 'https://vega.github.io/schema/vega-lite/v6.json', background: 'white', config: {...CONFIG, legend: {...CONFIG.legend, labelLimit: width - 50}},
     width, autosize: {type: 'fit', contains: 'padding'}, ...spec};
   const view = new View(parse(compile(whole).spec, null, {ast: true}),
     {expr: expressionInterpreter, renderer: 'svg', container: chart, hover: true});
@@ -76,10 +80,13 @@ export function wrapped(title, figure) {
   }, ['']);
 }
 
+// Pixels between a frame and the first and the last mark, which it would cut.
+export const ROOM = {nice: false, padding: 14};
+
 // A scale of positive numbers that span a factor of 20 is logarithmic, if their median is nearer to the middle of such a scale.
 export function scale(values) {
   const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
   const low = numbers[0], high = numbers[numbers.length - 1], median = numbers[Math.floor(numbers.length / 2)];
   const even = Math.abs((median - low) / (high - low) - 0.5), byFactors = Math.abs(Math.log(median / low) / Math.log(high / low) - 0.5);
-  return low > 0 && high / low >= 20 && even >= byFactors ? {type: 'log', nice: false} : {zero: false};
+  return low > 0 && high / low >= 20 && even >= byFactors ? {type: 'log', ...ROOM} : {zero: false, ...ROOM};
 }

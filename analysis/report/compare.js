@@ -3,7 +3,7 @@ import {body, command, element, fill, table} from './elements.js';
 import {cells, doubtSentence} from './plane.js';
 import {inputsOf} from './spectrum.js';
 import * as questions from './questions.js';
-import {state} from './state.js';
+import {isNamed, state} from './state.js';
 import {ask, has} from './stores.js';
 import {label, marked, number, onlyOf, operandOf, withError, withInterval} from './words.js';
 
@@ -28,7 +28,7 @@ export function showCompare() {
   // Points with the same inputs; of two single points (STORE:POINT) those that clast compared.
   const partner = (cell, i) => known[i].get(keyOf(first, cell)) ?? [...known[i].values()].find((other) => differences[i].has(`${cell.point_id} ${other.point_id}`));
   const rows = cells(first, state.quantity).map((cell) => [cell, ...others.map((_, i) => partner(cell, i))]).filter((row) => row.slice(1).some(Boolean));
-  const inputs = (row) => [...new Set(row.map((cell, i) => (cell ? inputsOf(state.stores[i], cell) : '')))].filter(Boolean).join('; ') || 'the only point';
+  const inputs = (row) => [...new Set(row.map((cell, i) => (cell ? inputsOf(state.stores[i], cell, isNamed(state.stores[i]) ? undefined : state.stores[i].axes) : '')))].filter(Boolean).join('; ') || 'the only point';
   const shown = (cell) => (cell ? `${marked(withInterval(cell), cell.doubt, cell.n)}, n=${cell.n ?? 0}` : '-');
   const {campaign, ...rest} = first.facts, chosen = {facts: first.name === first.facts.file ? first.facts : rest}; // STORE:CAMPAIGN names its own
   const both = (a, b) => (a.doubt || b?.doubt ? {withheld: 0} : null);
@@ -41,7 +41,7 @@ export function showCompare() {
   const none = others.filter((other) => other.facts.no_pair).map((other) => ` ${other.name}: ${other.facts.no_pair}.`);
   fill(body('compare'),
     ...apart.filter(Boolean).map((text) => element('p', {}, text)),
-    rows.length ? table(`${title} of ${rows.every((row) => inputs(row) === inputs([row[0]])) ? 'the points with the same varied inputs' : 'two points'}; ± is the 95 % interval over seeds`,
+    rows.length ? table(`${title} of ${rows.every((row) => inputs(row) === inputs([row[0]])) ? 'the points with the same varied inputs' : others.length > 1 ? 'the named points' : 'two points'}; ± is the 95 % interval over seeds`,
       ['inputs', first.name, ...others.flatMap((other) => [other.name, `${other.name} minus ${first.name}`])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputs([cell, ...rest]), shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, `These stores have no point in common.${none.join('')}`),

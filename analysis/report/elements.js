@@ -55,3 +55,7 @@ export function command(text) {
   }}, 'Copy');
   return element('span', {}, code, ' ', button);
 }
+
+// Of several stores each has its own line.
+export const commands = (texts) => (texts.length === 1 ? command(texts[0])
+  : element('div', {class: 'commands'}, 'One command of each store:', ...texts.map(command)));

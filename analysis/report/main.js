@@ -7,7 +7,7 @@ import {showRuns} from './runs.js';
 import {showSeeds} from './seeds.js';
 import {showSpectrum} from './spectrum.js';
 import {complete, onChange, readAddress, state, writeAddress} from './state.js';
-import {openEmbedded, openFile} from './stores.js';
+import {openEmbedded, openFile, tellInputs} from './stores.js';
 
 const tell = (text) => (document.getElementById('status').textContent = text);
 
@@ -40,6 +40,7 @@ async function add(file) {
   try {
     tell(`Reading ${file.name} ...`);
     state.stores.push(await openFile(file));
+    tellInputs(state.stores);
     state.active = state.stores.length - 1;
     state.chosen = new Set();
     await show('store');
@@ -90,6 +91,7 @@ function loadAgain(seconds) {
 async function start() {
   try {
     state.stores = await openEmbedded();
+    tellInputs(state.stores);
     readAddress();
     complete();
     writeAddress();

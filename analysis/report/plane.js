@@ -4,7 +4,7 @@ import {body, element, fill, select, table} from './elements.js';
 import {COLOURS, NUMBER, draw, logAxis, nothing, scale, wrapped} from './chart.js';
 import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
-import {changed, chosenPoints, state, store} from './state.js';
+import {changed, chosenPoints, drawnPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
 import {ask, exponents, has, newest} from './stores.js';
 import {inUnit, label, marked, number, onlyOf, plural, rangeOf, fileOf, withInterval} from './words.js';
@@ -193,7 +193,7 @@ function lineSpec(rows, title) {
   const numeric = rows.every((row) => typeof row[state.x] === 'number');
   const values = rows.map((row) => row[state.x]);
   const place = numeric ? {field: state.x, type: 'quantitative', title: x.encoding.title, scale: scale(values), axis: numbers(values)} : x.encoding;
-  const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false}};
+  const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false, padding: 8}};
   return {params: PARAMETERS, data: {values: rows}, height: 340, layer: [
     {mark: {type: 'rule', strokeWidth: 1.5}, encoding: {x: place, y: {...y, field: 'low'}, y2: {field: 'high'}}},
     {params: [{name: 'brush', select: {type: 'interval', encodings: ['x']}}],
@@ -276,8 +276,8 @@ function commandOf(at) {
 }
 
 const WHAT_ERRORS = '± in the table of points is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
-function resolutionSentence(rows) {
-  const studied = rows.filter((row) => row.resolution !== null), weak = rows.some((row) => row.weak) ? ' ~: weak, too few runs for the interval.' : '';
+function resolutionSentence(rows, marked) { // marked: ~ stands in the chart
+  const studied = rows.filter((row) => row.resolution !== null), weak = !rows.some((row) => row.weak) ? '' : marked ? ' ~: weak, too few runs for the interval.' : ' (weak): too few runs for the interval.';
   if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).${weak}`;
   const count = (verdict) => studied.filter((row) => row.verdict === verdict).length, diverging = count('diverges'), open = count('at-least');
   const others = studied.filter((row) => row.verdict !== 'diverges'), most = (others.length ? others : studied).reduce((one, row) => (row.resolution > one.resolution ? row : one));
@@ -320,13 +320,14 @@ export async function showPlane() {
   const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
+  const spec = !state.x ? {layer: []} : state.y ? planeSpec(rows, title) : lineSpec(known, title), texts = spec.layer.some(({encoding}) => encoding.text?.field === 'cell');
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
   if (!state.x) {
-    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}${doubtSentence(store(), rows)}`);
+    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows, false)}${doubtSentence(store(), rows)}`);
     return;
   }
   const inputs = [state.x, state.y].filter(Boolean);
-  const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
+  const view = await draw(figure, spec, {
     name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
     keys: true,
     caption, command: commandOf(at), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'untold', 'resolution', 'doubtful', 'doubts'],
@@ -338,17 +339,31 @@ export async function showPlane() {
   showChosen();
 }
 
+// "point 1, point 2 (16 runs) of a.db"
+function list(ones) {
+  const of = [...new Set(ones.map(({from}) => from))].map((one) => {
+    const points = ones.filter(({from}) => from === one).map(({point}) => point), named = points.slice(0, 3).map((point) => `point ${point.point_id}`).join(', ');
+    return `${named}${points.length > 3 ? ` and ${points.length - 3} more` : ''} (${plural(points.reduce((sum, point) => sum + (point.n ?? 0), 0), 'run')})${state.stores.length > 1 ? ` of ${one.name}` : ''}`;
+  });
+  return of.join('; ');
+}
+
+// Points of the other stores below.
+function besideSentence() {
+  const {drawn, left, alone} = drawnPoints(), added = drawn.filter(({from}) => from !== store());
+  return `${added.length ? ` Spectrum, scatter and runs below also have ${list(added)}.` : ''}${left.length ? ` There is no room there for ${list(left)}: choose it under Store.` : ''}${
+    alone ? ' Points of the other stores are drawn beside one or two chosen points only.' : ''}`;
+}
+
 export function showChosen() {
   const points = chosenPoints();
   plane.view?.signal('chosen', points.map((point) => point.point_id)).run();
-  const named = points.slice(0, 3).map((point) => `point ${point.point_id}`).join(', ');
-  document.getElementById('chosen').textContent = points.length
-    ? `Chosen: ${named}${points.length > 3 ? ` and ${points.length - 3} more` : ''} (${plural(points.reduce((sum, point) => sum + (point.n ?? 0), 0), 'run')}).` : 'No point is chosen.';
+  document.getElementById('chosen').textContent = points.length ? `Chosen: ${list(points.map((point) => ({from: store(), point})))}.${besideSentence()}` : 'No point is chosen.';
   for (const box of body('points').querySelectorAll('input')) box.checked = state.chosen.has(Number(box.value));
 }
 
 export function showPoints() {
-  const axes = store().axes.map((axis) => axis.column_name);
+  const axes = store().inputs.map((axis) => axis.column_name);
   const rows = plane.rows.slice(0, 1000);
   const boxes = (row) => element('input', {type: 'checkbox', value: row.point_id, checked: state.chosen.has(row.point_id), 'aria-label': `point ${row.point_id}`,
     change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});

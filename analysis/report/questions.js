@@ -10,6 +10,7 @@ export const labels = 'SELECT column_name, label, unit, factor, share, least, mo
 export const units = `SELECT column_name, min(unit) AS unit FROM column_doc WHERE unit <> '1'
   GROUP BY column_name HAVING count(DISTINCT unit) = 1`;
 export const axes = 'SELECT column_name, path, unit, meaning FROM axis ORDER BY path';
+export const fixedAxes = 'SELECT column_name, path, unit, meaning FROM fixed_axis ORDER BY path';
 export const canned = 'SELECT name, doc, sql, parameters FROM question';
 
 // Without an earlier form of a campaign: one whose points a later campaign of its name has.

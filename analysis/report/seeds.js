@@ -1,13 +1,13 @@
 // How much the seed matters: histogram and quantiles of the quantity over the runs of the chosen points.
 import {body, fill, table} from './elements.js';
-import {COLOURS, DASHES, draw, nothing} from './chart.js';
+import {COLOURS, DASHES, draw, heightWith, nothing} from './chart.js';
 import {cells, doubtSentence, modesText} from './plane.js';
 import * as questions from './questions.js';
-import {nameOf, whereOf, withPartners} from './spectrum.js';
-import {chosenPoints, state, store} from './state.js';
+import {commandsOf, nameOf} from './spectrum.js';
+import {chosenPoints, drawnPoints, state, store} from './state.js';
 import {quantileInterval, summary} from './statistics.js';
 import {ask, has} from './stores.js';
-import {between, label, marked, number, plural, rangeOf, fileOf, withInterval} from './words.js';
+import {between, label, marked, number, plural, rangeOf, withInterval} from './words.js';
 
 function valuesOf(from, point, quantity) {
   const rows = ask(from, questions.values(quantity), {point: point.point_id});
@@ -33,14 +33,12 @@ function histogram({name, values}, step) {
   return Array.from({length: high - low + 3}, (_, i) => low - 1 + i).map((bin) => ({name, low: bin * step, high: (bin + 1) * step, runs: counts.get(bin) ?? 0}));
 }
 
-const commandOf = (from, quantity, points) => `clast scatter ${fileOf(from)}${whereOf(from, points)} --quantity ${quantity}`;
-
 export async function showSeeds() {
   const figure = document.querySelector('#seeds figure'), below = body('seeds'), quantity = state.quantity, from = store();
   fill(below);
   if (!from.runColumns.has(quantity))
     return nothing(figure, quantity === 'beta' ? 'An exponent belongs to all runs of a point together: choose another quantity.' : 'Single runs of this quantity are not on this page (see "left out here").');
-  const samples = withPartners(chosenPoints()).filter((sample) => sample.from.runColumns.has(quantity))
+  const samples = drawnPoints().drawn.filter((sample) => sample.from.runColumns.has(quantity))
     .map((sample) => ({...sample, name: nameOf(sample.from, sample.point), values: valuesOf(sample.from, sample.point, quantity)})).filter((sample) => sample.values.length);
   if (samples.length === 0) {
     const kept = chosenPoints().some((point) => ask(from, questions.values('run_id'), {point: point.point_id}).length);
@@ -64,12 +62,12 @@ export async function showSeeds() {
   const shape = names.length > 1
     ? {mark: {type: 'line', interpolate: 'step-after', strokeWidth: 2}, encoding: {x, y, color: colour, strokeDash: dash}}
     : {mark: {type: 'bar', stroke: 'white'}, encoding: {x: {...x, bin: 'binned'}, x2: {field: 'high'}, y, color: colour}};
-  await draw(figure, {data: {values: drawn.flatMap((sample) => histogram(sample, step))}, height: 340, layer: [shape,
+  await draw(figure, {data: {values: drawn.flatMap((sample) => histogram(sample, step))}, height: heightWith(names), layer: [shape,
     {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: names.length > 1 ? colour : {value: 'black'}}},
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
     caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Dashed lines: means.${doubts}`,
-    command: commandOf(from, quantity, samples.filter((sample) => sample.from === from).map((sample) => sample.point.point_id)),
+    command: commandsOf(samples, ['clast scatter', `${apart ? '' : ' --by ""'} --quantity ${quantity}`, 'seeds']),
     columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });
   const mean = (row) => (row.all ? `${marked(withInterval(row.all), row.all.doubt, row.all.n)}, n=${row.all.n}` : withInterval(row));

@@ -1,5 +1,6 @@
 // What the reader has chosen. It is kept in the address, so that a link shows the same and a page that loads itself
 // again stays as it was. An address is data: unknown words in it are dropped.
+import {COLOURS} from './chart.js';
 import {cells, effect} from './plane.js';
 import {widestSpectrum} from './questions.js';
 import {ask} from './stores.js';
@@ -8,6 +9,28 @@ export const state = {stores: [], active: 0, quantity: null, x: null, y: null, a
 
 export const store = () => state.stores[state.active];
 export const chosenPoints = () => store().points.filter((point) => state.chosen.has(point.point_id));
+
+// A store that was named as STORE:POINT.
+export const isNamed = ({facts, name, points}) => facts.file && facts.file !== name && points.length === 1;
+
+// Points of other stores that are drawn beside this one: at the same place, or named. Masses have one unit in a chart.
+function beside(point) {
+  const same = (other, candidate) => other.axes.length === store().axes.length && other.axes.every((axis) => candidate[axis.column_name] === point[axis.column_name]);
+  return state.stores.filter((other) => other !== store() && other.facts.mass_unit === store().facts.mass_unit)
+    .flatMap((other) => other.points.filter((candidate) => isNamed(other) || same(other, candidate)).slice(0, 1).map((candidate) => ({from: other, point: candidate})));
+}
+
+const MOST_CHOSEN = 2; // points beside which those of other stores are drawn
+
+// {drawn, left}: [{from, point}] of the charts and the runs, and what a chart has no colour for.
+export function drawnPoints() {
+  const chosen = chosenPoints().map((point) => ({from: store(), point}));
+  if (chosen.length > MOST_CHOSEN) return {drawn: chosen, left: [], alone: state.stores.length > 1};
+  const all = chosen.flatMap((one) => [one, ...beside(one.point)]).filter(({point}, i, list) => list.findIndex((other) => other.point === point) === i);
+  let room = COLOURS.length - chosen.length;
+  const fits = new Set(all.filter(({from}) => from === store() || room-- > 0));
+  return {drawn: [...fits], left: all.filter((one) => !fits.has(one)), alone: false};
+}
 
 const listeners = [];
 export const onChange = (listener) => listeners.push(listener);

@@ -72,10 +72,11 @@ function describe(store) {
   store.labels = new Map(read('label', questions.labels).map((row) => [row.column_name, row]));
   store.units = new Map(read('column_doc', questions.units).map((row) => [row.column_name, row.unit]));
   store.axes = ask(store, questions.axes);
+  store.fixed = read('fixed_axis', questions.fixedAxes); // what other parts of its file vary
   store.pointColumns = columns('points');
   store.runColumns = new Set(columns('runs'));
   store.doubtful = store.runColumns.has('doubtful') ? 'doubtful' : store.runColumns.has('warnings') ? "warnings <> ''" : '0'; // of older stores
-  store.points = newest(ask(store, questions.points(store.axes.map((axis) => axis.column_name),
+  store.points = newest(ask(store, questions.points([...store.axes, ...store.fixed].map((axis) => axis.column_name),
     store.pointColumns.includes('excluded') ? ', excluded' : ''))); // an older store has no such column
   const values = (column) => new Set(store.points.map((point) => point[column]));
   const varied = store.axes.filter((axis) => [...values(axis.column_name)].filter((value) => value !== null).length > 1);
@@ -83,6 +84,16 @@ function describe(store) {
   store.quantities = quantitiesOf(store);
   store.canned = read('question', questions.canned);
   return store;
+}
+
+// The inputs that name a store's points: what it varies, and what differs between it and another part of a file.
+export function tellInputs(stores) {
+  const differs = ({column_name: column}) => {
+    const values = stores.filter((store) => store.pointColumns.includes(column)).flatMap((store) => store.points.map((point) => point[column]));
+    return new Set(values.filter((value) => value !== undefined)).size > 1;
+  };
+  for (const store of stores)
+    store.inputs = [...store.axes, ...store.fixed.filter(differs)].sort((a, b) => (a.path < b.path ? -1 : 1));
 }
 
 export async function openEmbedded() {

@@ -29,6 +29,8 @@ struct making {
   const struct report_choice *choice;
   const struct ask_choice *runs; /* of this store */
   struct store *store;
+  struct ask_column input[LIMITS_AXES_OF_TABLE]; /* read_inputs() */
+  size_t input_count;
   struct ask_page *page;
   size_t tried, picture_bytes, left_out, not_drawn; /* of pictures */
   bool full;                                        /* the next picture would be too much */
@@ -138,6 +140,10 @@ static status add_picture(struct making *making, const struct answer *kept, stru
 static status fill_page(struct making *making, const char *name, const char *path, struct page_data *data,
                         struct error *error) {
   TRY(add_facts(making, name, path, error));
+  for (size_t i = 0; i < making->input_count; i++)
+    TRY(add_label(making, making->input[i].name, error));
+  if (making->input_count)
+    TRY(ask_page_fixed(making->page, making->store, making->input_count, making->input, error));
   ANSWER columns = ask_page_columns(making->page, error);
   while (answer_next(&columns))
     TRY(add_label(making, answer_text(&columns, 0), error));
@@ -152,6 +158,16 @@ static status fill_page(struct making *making, const char *name, const char *pat
   return ask_page_file(making->page, &data->bytes, &data->size, error);
 }
 
+/* STORE:POINT and STORE:CAMPAIGN of a page with others: the inputs that tell the points of the whole file apart, as two
+ * parts may differ in an input that neither varies. */
+static status read_inputs(struct making *making, struct error *error) {
+  const struct ask_choice *part = making->runs;
+  if (making->choice->count == 1 || (part->point == 0 && !part->campaign))
+    return STATUS_OK;
+  TRY(ask_choose(making->store, &(struct ask_choice){.campaigns_alone = part->campaigns_alone, .axes = true}, error));
+  return ask_columns_axes(making->store, false, LIMITS_AXES_OF_TABLE, making->input, &making->input_count, error);
+}
+
 static status add_store(const struct report_choice *choice, const char *name, struct page_data *data,
                         struct error *error) {
   STORE store = NULL;
@@ -160,12 +176,13 @@ static status add_store(const struct report_choice *choice, const char *name, st
   struct ask_choice runs = choice->runs;
   ask_choose_operand(name, path, sizeof path, &runs);
   TRY(store_open_reader(path, &store, error));
+  struct making making = {.choice = choice, .runs = &runs, .store = store};
+  TRY(read_inputs(&making, error));
   TRY(ask_choose(store, &runs, error));
   TRY(ask_choose_estimates(store, error));
   TRY(ask_run_excluded_count(store, &excluded, error));
   uncertainty_excluded(excluded, name);
   uncertainty_left_out(ask_choice_left_out(store));
-  struct making making = {.choice = choice, .runs = &runs, .store = store};
   status code = ask_page_make(store, &making.page, error);
   if (code == STATUS_OK)
     code = fill_page(&making, name, path, data, error);
@@ -199,14 +216,15 @@ static bool is_running(const struct report_choice *choice) {
   return running;
 }
 
-/* demo.html in the current folder for the store folder/demo.db, demo-1.html for folder/demo.db:1. */
+/* demo.html in the current folder for the store folder/demo.db, demo@1.html for folder/demo.db:1: demo-1.html is the
+ * page of demo-1.db. */
 static void name_page(const char *operand, char *name, size_t size) {
   char store[LIMITS_PATH];
   ask_choose_operand(operand, store, sizeof store, &(struct ask_choice){0});
   const char *slash = strrchr(store, '/'), *base = slash ? slash + 1 : store;
   const char *dot = strrchr(base, '.'), *part = operand + strnlen(store, strlen(operand));
   snprintf(name, size, "%.*s%s%s.html", (int)(dot && dot > base ? (size_t)(dot - base) : strlen(base)), base,
-           *part ? "-" : "", *part ? part + 1 : "");
+           *part ? "@" : "", *part ? part + 1 : "");
   for (char *at = name; (at = strchr(at, '/'));)
     *at = '-'; /* in the name of a campaign */
 }

@@ -293,8 +293,8 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
 }
 
 status ask_columns_written(struct store *store, const char *column, struct ask_column *out, struct error *error) {
-  ANSWER answer = answer_to(store, error, "SELECT column_name, unit, written_unit FROM axis WHERE column_name = %Q",
-                            column);
+  ANSWER answer = answer_to(store, error,
+                            "SELECT column_name, unit, written_unit FROM main.axis WHERE column_name = %Q", column);
   *out = (struct ask_column){.factor = 1};
   snprintf(out->name, sizeof out->name, "%s", column);
   if (!answer_next(&answer) && answer_status(&answer) == STATUS_OK)

@@ -631,7 +631,7 @@ status ask_ejecta(struct store *store, const struct ask_pool *pool, struct ask_e
  *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
  *   campaign, session, attempt, axis, column_doc   of the store's tables
  *   question                the canned queries that work here
- *   label, fact, picture, difference   filled in by the caller ---- */
+ *   label, fact, picture, difference, fixed_axis   filled in by the caller ---- */
 
 enum { ASK_PAGE_RUNS = 10000 }; /* most single runs of a page */
 
@@ -646,6 +646,10 @@ void ask_page_free(struct ask_page *page); /* NULL is fine */
 status ask_page_fact(struct ask_page *page, const char *name, const char *value, struct error *error);
 /* The readable name of a column, the unit in which it is shown, and the SI value `factor` of one such unit. */
 status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
+                      struct error *error);
+/* Makes the table `fixed_axis`: of these inputs the rows of the store's table axis that the chosen part of it does not
+ * have, as it does not vary them. */
+status ask_page_fixed(struct ask_page *page, struct store *store, size_t count, const struct ask_column input[],
                       struct error *error);
 /* All columns of the page that have no label yet, one row each: inputs that were varied, and results. */
 struct answer ask_page_columns(struct ask_page *page, struct error *error);

@@ -654,6 +654,18 @@ status ask_page_label(struct ask_page *page, const char *column, const char *lab
                       isfinite(range.most) ? range.most : 0);
 }
 
+status ask_page_fixed(struct ask_page *page, struct store *store, size_t count, const struct ask_column input[],
+                      struct error *error) {
+  sqlite3_str *names = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < count; i++)
+    sqlite3_str_appendf(names, "%s%Q", i ? ", " : "", input[i].name);
+  return copy(page,
+              answer_to(store, error,
+                        "SELECT * FROM main.axis WHERE path NOT IN (SELECT path FROM axis) AND column_name IN (%z)",
+                        sqlite3_str_finish(names)),
+              "fixed_axis", EXACT);
+}
+
 struct answer ask_page_columns(struct ask_page *page, struct error *error) {
   return answer_to(&page->store, error,
                    "SELECT column_name FROM axis UNION SELECT quantity FROM means UNION SELECT name FROM "

@@ -386,6 +386,66 @@ def scenes(browser):
     done("a page of two scenes offers commands that work")
 
 
+def commands_of(browser, figure):
+    return [shlex.split(line) for line in browser.js(f"[...document.querySelectorAll('{figure} code')].map((c) => c.textContent)")]
+
+
+def drawn_together(browser, page, count):
+    """The commands under the spectrum give the numbers of the chart; the page says which points it has, and lists their runs."""
+    browser.open(page)
+    wait_shown(browser, 1)
+    keep_downloads(browser)
+    chart = list(csv.DictReader(io.StringIO(taken(browser, "#spectrum", "CSV"))))
+    commands = commands_of(browser, "#spectrum")
+    pictures = [words[words.index("--picture") + 1] for words in commands]
+    table = [row for words in commands for row in rows_of([*words[1:words.index("--picture")], "--csv"])]
+    got, want = (sorted((float(r[mass]), float(r["number_density"])) for r in rows) for rows, mass in ((chart, "lower_kg"), (table, "lower")))
+    assert len(got) == len(want) and all(abs(u - v) <= 2e-6 * v for a, b in zip(got, want) for u, v in zip(a, b)), (commands, len(got), len(want))
+    assert len(set(pictures)) == len(commands) == count, commands
+    names = browser.js("[...document.querySelectorAll('#seeds thead th')].map((h) => h.textContent).slice(1)")
+    told, rows = text(browser, "#chosen"), browser.js("[...document.querySelectorAll('#runs tbody tr')].map((r) => r.cells[0].textContent)")
+    stores = [name.split(": ")[0] for name in names]
+    assert len(set(names)) == len(names) > 1 and all(f" of {name}" in told for name in stores), (names, told)
+    assert rows == [name for name in stores for _ in range(3)], rows
+    assert len(commands_of(browser, "#seeds")) == count
+    for words in commands + commands_of(browser, "#seeds"):
+        subprocess.run([clast, *words[1:]], check=True, capture_output=True)
+        assert os.path.getsize(words[-1]) > 1000
+    return names
+
+
+def several(browser):
+    drawn_together(browser, "two.html", 2)
+    browser.open("two.html", "#points=1.2.3")
+    wait_shown(browser, 1)
+    assert "Points of the other stores are drawn beside one or two chosen points only." in text(browser, "#chosen")
+    drawn_together(browser, "pair.html", 1)
+    names = drawn_together(browser, "energies.html", 1)
+    assert [re.search("energy .*/m", name)[0] for name in names] == ["energy 2000 J/m", "energy 3000 J/m"], names
+    assert all(f"charge.energy{value} J/m" in text(browser, "#asked") for value in (2000, 3000)), text(browser, "#asked")
+    assert "There is no room there for point 3 (3 runs) of small.db:3: choose it under Store." in open_text(browser, "seven.html", "#chosen")
+    done("points of several stores and named points are drawn together, and the commands make the charts")
+
+
+def open_text(browser, page, selector):
+    browser.open(page)
+    wait_shown(browser, 1)
+    return text(browser, selector)
+
+
+def ends(browser):
+    """The first and the last mark of a chart lie within its frame. ~ is told where the chart has it."""
+    browser.open(f"{three}.html", "#x=threshold_strain&y=")
+    wait_shown(browser, 1)
+    for figure in ("#plane-chart", "#spectrum"):
+        left, right, *marks = browser.js(f"""(() => {{ const box = (e) => e.getBoundingClientRect(), view = box(document.querySelector('{figure} .mark-group.role-frame path.background'));
+            return [view.left, view.right, ...[...document.querySelectorAll('{figure} .mark-symbol.role-mark path')].flatMap((e) => [box(e).left, box(e).right])]; }})()""")
+        assert len(marks) > 4 and left <= min(marks) and max(marks) <= right, (figure, left, right, marks)
+    caption = text(browser, "#plane-chart figcaption")
+    assert "(weak): too few runs" in caption and "~" not in caption, caption
+    done("no mark is cut by the frame")
+
+
 def side_by_side(browser):
     browser.open("two.html")
     wait_shown(browser, 1)
@@ -456,6 +516,8 @@ with Browser() as browser:
     opens_on(browser)
     scenes(browser)
     side_by_side(browser)
+    several(browser)
+    ends(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]
     assert outside == [], outside

@@ -228,6 +228,7 @@ if [ "$sanitized" -eq 0 ]; then
   tiny other # 8 points, too many to distinguish in one chart
   sed -i 's/energy: 2/energy: 3/; s/strain: .*/strain: [2 %, 3 %, 4 %, 5 %]/' other.yaml
   expect 0 "$clast" run other.yaml -j 2 --quiet
+  expect 0 "$clast" merge both.db small.db other.db
   tiny marked # a time step near the longest stable one marks the results of half of the points
   sed -i 's/threshold.angle: .*/fidelity.time_step: [1 us, 4 us]/; s/stop.end_time: [^,}]*/stop.least_time: 1 ms/' marked.yaml
   expect 0 "$clast" run marked.yaml -j 2 --quiet
@@ -250,7 +251,10 @@ PY
   expect 0 "$clast" report small.db other.db -o two.html
   expect 0 "$clast" report small.db --campaign 1 --where 'seed < 3' -o chosen.html
   expect 0 "$clast" report small.db:4
-  says "small-4.html written"
+  says "small@4.html written" # not small-4.html, the page of small-4.db
+  points=$(number both.db "select group_concat('both.db:' || point_id, ' ') from points where threshold_strain < 0.021 and threshold_angle < 0.05")
+  expect 0 "$clast" report $points -o energies.html
+  expect 0 "$clast" report small.db:1 small.db:2 small.db:4 other.db:1 other.db:2 other.db:4 small.db:3 -o seven.html
   expect 0 "$clast" report small.db marked.db -o apart.html
   # The page's own mean and standard deviation do not depend on the unit.
   echo '{"type": "module"}' >package.json
@@ -271,7 +275,7 @@ JS
   expect 0 "$clast" report scenes.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 57
+  done_after 60
 else
   done_after 41
 fi
