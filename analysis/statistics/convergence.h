@@ -28,6 +28,10 @@
  * its coverage holds for every p of the range, also where the levels cannot tell p; there it is wide. A prior over p
  * would make it shorter and miss the limit of the p at the ends of the range.
  *
+ * A law whose limit lies outside of what the result can have (a share above 1) costs as much in -2 ln(likelihood) as
+ * the limit is outside, in squares of its standard deviation. If the best law with that cost is rejected against the
+ * best one without, no limit is seen.
+ *
  * Only a law that the levels contradict is told from a right one. Two errors that cancel within the noise on all
  * levels, or a law that changes beyond the finest level, look like a limit that is reached
  * (tests/verification/limits.md). */
@@ -51,7 +55,7 @@ enum limit_verdict {
   LIMIT_TOO_FEW,  /* fewer than three levels or three seeds */
   LIMIT_CONSTANT, /* all runs of all levels are equal: nothing tells how far other runs may be */
   LIMIT_SEEN,     /* a law of the range agrees with the three finest levels at least */
-  LIMIT_NOT_SEEN, /* none does */
+  LIMIT_NOT_SEEN, /* none does, or none has a limit in the range of the result */
   LIMIT_VERDICTS
 };
 

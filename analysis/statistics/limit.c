@@ -435,7 +435,20 @@ static double best_tail(const struct work *work, size_t dropped) {
   return best;
 }
 
-/* Makes all fits, and finds how many levels must be dropped. */
+/* -2 ln of the likelihood that the limit of a law is a value that the result can have: 0 if it is one. */
+static double cost_of_range(const struct limit_ladder *ladder, const struct work *work, const struct fit *fit) {
+  double mean[DRAWS], deviation[DRAWS], centre = 0, square = 0;
+  evaluate(work, fit, &(struct quantity){.limit = 1}, mean, deviation);
+  for (size_t d = 0; d < DRAWS; d++) {
+    centre += fit->weight[d] * mean[d];
+    square += fit->weight[d] * (mean[d] * mean[d] + deviation[d] * deviation[d]);
+  }
+  const double outside = fmax(fmax(ladder->least - centre, centre - ladder->most), 0);
+  return outside > 0 ? outside * outside / fmax(square - centre * centre, 0) : 0;
+}
+
+/* Makes all fits, and finds how many levels must be dropped. Of laws that agree with the levels, those with a possible
+ * limit count: without one, no limit is seen. */
 static void find_law(const struct limit_ladder *ladder, struct work *work, double rejected, struct limit_law *law) {
   const double low = ladder->order_least > 0 ? ladder->order_least : LIMIT_ORDER_LEAST;
   const double high = ladder->order_most > 0 ? ladder->order_most : LIMIT_ORDER_MOST;
@@ -444,17 +457,20 @@ static void find_law(const struct limit_ladder *ladder, struct work *work, doubl
   work->count = 0;
   for (size_t dropped = 0; dropped <= most; dropped++)
     add_fits(work, dropped, low, high, rejected);
-  double best = HUGE_VAL;
-  for (size_t i = 0; i < work->count; i++)
+  double best = HUGE_VAL, possible = HUGE_VAL;
+  for (size_t i = 0; i < work->count; i++) {
     best = fmin(best, work->fits[i].deviance);
+    possible = fmin(possible, work->fits[i].deviance + cost_of_range(ladder, work, &work->fits[i]));
+  }
   for (size_t i = 0; i < work->count; i++)
-    work->fits[i].deviance -= best;
+    work->fits[i].deviance -= possible;
   for (law->dropped = 0; law->dropped < most && best_tail(work, law->dropped) < REJECTED; law->dropped++)
     ;
   law->fit = best_tail(work, law->dropped);
   if (law->dropped > 0)
     law->fit_with = best_tail(work, law->dropped - 1);
-  law->verdict = law->fit >= REJECTED || low == high ? LIMIT_SEEN : LIMIT_NOT_SEEN;
+  const bool seen = (law->fit >= REJECTED || low == high) && possible - best < rejected;
+  law->verdict = seen ? LIMIT_SEEN : LIMIT_NOT_SEEN;
 }
 
 static void find_change(const struct data *data, const struct noise *noise, double confidence, struct limit_law *law) {

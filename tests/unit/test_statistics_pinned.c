@@ -164,7 +164,7 @@ static void of_ladders(void) {
                                         random_draw(5, RANDOM_LATTICE, 0, k) - 0.5);
         }
         if (shape == 2)
-          ladder.least = 0.32, ladder.most = 0.6, ladder.order_least = ladder.order_most = orders[o];
+          ladder.least = 0.3, ladder.most = 0.6, ladder.order_least = ladder.order_most = orders[o];
         struct limit_law law;
         struct limit_point point = {.step = 0.01};
         assert_true(limit_infer(&ladder, 0.95, &law, 1, &point));

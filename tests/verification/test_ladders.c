@@ -256,6 +256,18 @@ static void ranges_and_equal_runs(void **state) {
   struct limit_ladder ladder = ladder_of(3, 5, values);
   assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
   assert_true(law.verdict == LIMIT_SEEN && law.limit.low >= 0 && law.limit.high <= 1);
+  /* Every law would lead a share beyond 1: no limit is seen. If one that agrees less leads to a share, its interval
+   * counts, and not what is left of the others at the end of the range. */
+  for (size_t l = 0; l < 3; l++)
+    for (size_t s = 0; s < 5; s++)
+      values[l][s] = 1.1 - 0.4 * pow(0.5, (double)l) + 0.001 * sin((double)(7 * l + 3 * s));
+  assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
+  assert_true(law.verdict == LIMIT_NOT_SEEN && isnan(law.limit.low));
+  for (size_t l = 0; l < 3; l++)
+    for (size_t s = 0; s < 5; s++)
+      values[l][s] = 1 - 0.3 * pow(0.25, (double)l) + 0.04 * sin((double)(7 * l + 3 * s));
+  assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
+  assert_true(law.verdict == LIMIT_SEEN && law.limit.high == 1 && law.limit.low < 0.9);
   for (size_t l = 0; l < 3; l++)
     for (size_t s = 0; s < 5; s++)
       values[l][s] = 0;
