@@ -240,6 +240,17 @@ const char *pooled_exponent_untold(const struct pooled_exponent *exponent) {
   return exponent->fit.standard_error < 1 ? NULL : "no interval and a standard error of 1 or more";
 }
 
+const char *pooled_exponent_no_interval(const struct pooled_exponent *exponent) {
+  _Static_assert(EXPONENT_LEAST_FRAGMENTS == 5, "as the reason says");
+  if (isfinite(exponent->interval.half_width))
+    return NULL;
+  if (isfinite(exponent->interval.standard_error))
+    return "all runs are equal";
+  return exponent->fit.method == EXPONENT_LEAST_SQUARES ? "without one of the runs a bin is empty"
+                                                        : "without one of the runs there are fewer than 5 different "
+                                                          "masses";
+}
+
 int pooled_exponent_decimals(const struct pooled_exponent *exponent) {
   return isfinite(exponent->interval.half_width) || !(exponent->fit.standard_error >= 0.1) ? 2 : 1;
 }

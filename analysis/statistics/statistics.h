@@ -401,6 +401,8 @@ struct pooled_exponent {
 /* Why tables for people and pictures show no beta: its whole number is not known, by the interval or by
  * fit.standard_error. NULL: they show it. */
 const char *pooled_exponent_untold(const struct pooled_exponent *exponent);
+/* Why a beta of several runs has no interval. NULL: it has one. */
+const char *pooled_exponent_no_interval(const struct pooled_exponent *exponent);
 /* Decimals of beta for people where no interval gives them. */
 int pooled_exponent_decimals(const struct pooled_exponent *exponent);
 /* Appends a reason to "not known to a whole number: ...", unless it is there or NULL. */

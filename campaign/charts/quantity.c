@@ -644,7 +644,8 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   for (size_t i = 0; i < count; i++)
     weak |= tile[i].weak;
   if (weak)
-    text_append(caption, sizeof caption, "; ~: weak, too few runs");
+    text_append(caption, sizeof caption, "; ~: %s",
+                quantity->exponent ? "no interval (clast explain weak)" : "weak, too few runs");
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);
   if (*quantity->changing)

@@ -88,27 +88,44 @@ static bool marks_all(const struct condition *list, const char *word) {
   return false;
 }
 
-/* Prints the words of the conditions on which a result of an engine rests, besides those on which all rest; a withheld
- * one in parentheses. Nothing when there are none. `path` NULL: the words on which all rest. */
-static void explain_rests_on(const struct engine_kind *kind, const char *path, const char *before) {
-  const char *last = "";
-  char words[1024] = "";
+/* Appends the words of the conditions on which a result of an engine rests, besides those on which all rest; a withheld
+ * one in parentheses. `path` NULL: the words on which all rest. */
+enum { RESTS = 1024 };
+static void rests_on(const struct engine_kind *kind, const char *path, char words[RESTS]) {
+  const char *last = "", *before = "";
   for (const struct condition *c = kind->conditions; c && c->word; c++) {
     if (strcmp(last, c->word) == 0 || marks_all(kind->conditions, c->word) != !path ||
         (path && condition_mark(c, c->word, path) == CONDITION_SOUND))
       continue;
-    text_append(words, sizeof words, c->withheld ? "%s(%s)" : "%s%s", *words ? ", " : "", c->word);
+    text_append(words, RESTS, c->withheld ? "%s(%s)" : "%s%s", before, c->word);
     last = c->word;
+    before = ", ";
   }
-  if (*words)
-    words_print(stdout, before, "%s (%s): %s", path ? path : "every result", kind->name, words);
 }
 
-/* The same of a row that is a result. */
+/* Prints them as an item of a list; nothing when there are none. */
+static void explain_rests_on(const struct engine_kind *kind, const char *path) {
+  char words[RESTS] = "";
+  rests_on(kind, path, words);
+  if (*words)
+    words_print(stdout, "- ", "%s (%s): %s", path ? path : "every result", kind->name, words);
+}
+
+/* Prints all conditions of a row that is a result. */
 static void explain_doubts_of(const struct field_table *table, const char *path) {
-  for (size_t i = 0; i < engine_count(); i++)
-    if (table == &outcome_table || table == engine_at(i)->results)
-      explain_rests_on(engine_at(i), path, "    Conditions; a condition in parentheses withholds it: ");
+  for (size_t i = 0; i < engine_count(); i++) {
+    const struct engine_kind *kind = engine_at(i);
+    char own[RESTS] = "", every[RESTS] = "";
+    if (table != &outcome_table && table != kind->results)
+      continue;
+    rests_on(kind, path, own);
+    rests_on(kind, NULL, every);
+    if (!*own && !*every)
+      continue;
+    words_print(stdout, "    ", "Conditions (%s)%s: %s%s%s%s", kind->name,
+                strchr(own, '(') ? "; a condition in parentheses withholds it" : "", own, *own ? "; " : "",
+                *every ? "those of every result: " : "", every);
+  }
 }
 
 /* Prints the meaning of a word of the glossary. */
@@ -274,10 +291,10 @@ static bool explain_whole(const char *word) {
     puts("\n## Results and their conditions\n\nIn parentheses: beyond the bound the result is withheld.\n");
     for (size_t i = 0; i < engine_count(); i++) {
       const struct field_table *tables[] = {&outcome_table, engine_at(i)->results};
-      explain_rests_on(engine_at(i), NULL, "- ");
+      explain_rests_on(engine_at(i), NULL);
       for (size_t t = 0; t < 2; t++)
         for (size_t k = 0; k < tables[t]->count; k++)
-          explain_rests_on(engine_at(i), tables[t]->rows[k].path, "- ");
+          explain_rests_on(engine_at(i), tables[t]->rows[k].path);
     }
     puts("\n## Conditions\n");
     explain_conditions(NULL);

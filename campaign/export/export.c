@@ -22,6 +22,7 @@ static const char *const exported[][2] = {
     {"points", "A row for each point: inputs, and means over its runs with 95 % intervals"},
     {"spectra", "A row for each point and bin of fragment mass"},
     {"estimates", "A row for each exponent of the fragment mass distribution"},
+    {"resolution", "A row for each result of a point that clast converge studied: its error by finer settings"},
     {"column_doc", "Meaning and unit of every column of the store and of these tables"},
 };
 enum { TABLES = sizeof exported / sizeof exported[0] };

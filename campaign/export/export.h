@@ -14,7 +14,7 @@ enum export_format { EXPORT_CSV, EXPORT_JSON_LINES, EXPORT_TABULAR };
 status export_files_write(struct store *store, const char *path, const char *view, enum export_format format,
                           struct error *error);
 
-/* runs.csv, points.csv, spectra.csv, estimates.csv and column_doc.csv in the folder, which is made. */
+/* A CSV file of each view, and column_doc.csv, in the folder, which is made. */
 status export_files_folder(struct store *store, const char *folder, struct error *error);
 
 /* ---- an RO-Crate 1.1 of the profile Process Run Crate 0.5, for an archive ---- */

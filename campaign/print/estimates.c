@@ -9,6 +9,7 @@
 struct seen {
   bool failed, single, interval, ends, weak, all_one, unknown, beta, same;
   char untold[400]; /* why exponents are not told */
+  char open[200];   /* why those of several runs have no interval */
 };
 
 struct printing {
@@ -163,7 +164,9 @@ static status row_for_people(struct printing *printing, const struct ask_points_
     const bool tells = !untold, has = isfinite(fit->interval.half_width);
     const bool weak = tells && !has && row->n > 1;
     printing->seen.beta |= tells;
-    printing->seen.weak |= weak;
+    const char *open = weak ? pooled_exponent_no_interval(fit) : NULL;
+    if (open && !strstr(printing->seen.open, open))
+      text_append(printing->seen.open, sizeof printing->seen.open, "%s%s", *printing->seen.open ? ", or " : "", open);
     pooled_exponent_tell(untold, printing->seen.untold, sizeof printing->seen.untold);
     table_fixed(table, tells ? fit->fit.beta : (double)NAN, pooled_exponent_decimals(fit));
     table_real(table, fit->interval.half_width);
@@ -227,7 +230,9 @@ static void print_legend(const struct printing *printing, FILE *out) {
                 ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window, "
                 "without the largest of each run (ML). "
                 "`clast explain WORD` tells of beta, ML, LSQ, window%s",
-                seen->weak ? ", weak" : "");
+                seen->weak || *seen->open ? ", weak" : "");
+  if (*seen->open)
+    text_append(text, sizeof text, ". beta 1.6~: no interval, since %s", seen->open);
   if (*seen->untold)
     text_append(text, sizeof text, ". beta -: %s", seen->untold);
   if (seen->same)

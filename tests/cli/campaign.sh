@@ -189,7 +189,7 @@ expect 74 "$clast" export tiny.db hand.db
 expect 74 "$clast" export tiny.db hand.db/tables --csv
 says "cannot make the folder"
 expect 0 "$clast" export tiny.db tables --csv
-same "$(ls tables | tr '\n' ' ')" "column_doc.csv estimates.csv points.csv runs.csv spectra.csv " "exported tables"
+same "$(ls tables | tr '\n' ' ')" "column_doc.csv estimates.csv points.csv resolution.csv runs.csv spectra.csv " "exported tables"
 same "$(python -c "import csv; print(len(list(csv.DictReader(open('tables/runs.csv', newline='')))))")" 20 "rows of runs.csv"
 
 # two halves from two machines make the whole

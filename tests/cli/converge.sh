@@ -174,6 +174,11 @@ expect 0 "$clast" plot tiny.db tiny.png --x threshold.angle --by threshold.strai
 says "left out: 4 points"
 # A study that is stopped leaves points that no campaign has and that have no runs.
 cp tiny.db planned.db
+# The view of the studies is a table of the folder, too, of the chosen points alone.
+expect 0 "$clast" export tiny.db tables --csv
+same "$(tail -n +2 tables/resolution.csv | wc -l)" "$(number tiny.db 'select count(*) from resolution join points using (point_id) where not study')" "rows of resolution.csv"
+expect 0 "$clast" export tiny.db tables --csv --point 1
+same "$(tail -n +2 tables/resolution.csv | cut -d, -f1 | sort -u)" 1 "points of resolution.csv"
 sqlite3 planned.db "insert into point select 1000, randomblob(16), null, engine, scene_name, scene from point limit 1;
   insert into point_input select 1000, path, value from point_input where point_id = (select min(point_id) from point)"
 expect 0 "$clast" map planned.db planned.png
@@ -592,4 +597,4 @@ expect 65 "$clast" converge bad.yaml --list
 says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 149
+done_after 153

@@ -130,4 +130,24 @@ for scene in $("$clast" scenes --csv | tail -n +2 | cut -d, -f1); do
   [ "$("$clast" scenes "$scene" | wc -L)" -le 100 ] || fail "a wide line in scene $scene"
 done
 ok "scenes in lines"
-done_after 37
+# A result names all its conditions, also those on which every result rests.
+expect 0 "$clast" explain largest_fraction
+tr -s ' \n' ' ' <out | grep -q 'Conditions (sph).* coarse, wall, .*(hot); those of every result: drift, .* moduli' || fail "conditions of every result"
+grep -q '(command)' out && fail "an engine without conditions"
+expect 0 "$clast" explain mean_damage
+tr -s ' \n' ' ' <out | grep -q 'those of every result: drift, .* cut' || fail "conditions of every result"
+# An exponent without an interval has its mark in the legend.
+cat >open.yaml <<'YAML'
+name: open
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, threshold.angle: 6 deg, threshold.strain: 5 %}
+seeds: {per_point: 6}
+YAML
+expect 0 "$clast" run open.yaml -j 2 --quiet
+grep -q ' [0-9.]*~$' out || fail "no exponent without an interval"
+expect 0 "$clast" estimates open.db
+says "beta 1.6~: no interval, since without one of the runs a bin is empty"
+grep -q 'weak, too few' err && fail "a share is called weak that is not"
+expect 0 "$clast" explain weak
+prints "a bin is empty (LSQ)"
+done_after 42
