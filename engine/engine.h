@@ -52,17 +52,22 @@ struct knob {
 
 /* Named materials: documents, with a source for each value. */
 struct engine_materials {
-  const struct field_table *values;  /* of one material */
-  const char *const (*overview)[2];  /* columns of `clast materials`: heading, path of a value; NULL ends the list */
-  const char *const *not_values;     /* NULL-terminated: keys that a reader may expect */
-  const char *instead;               /* what to give in place of these */
-  const char *either[2];             /* paths of two names of one value: the one that is given later counts */
-  const char *(*name)(size_t index); /* sorted; NULL beyond the last */
+  const struct field_table *values; /* of one material */
+  const char *const (*overview)[2]; /* columns of `clast materials`: heading, path of a value; NULL ends the list */
+  const char *const *not_values;    /* NULL-terminated: keys that a reader may expect */
+  const char *instead;              /* what to give in place of these */
+  const char *either[2];            /* paths of two names of one value: the one that is given later counts */
+  /* Inputs of a scene outside of its materials that are properties of one: path of the input, path of the material's
+   * name; ended by NULL. */
+  const char *const (*beside)[2];
+  const char *(*name)(size_t index);     /* sorted; NULL beyond the last */
   const char *(*text)(const char *name); /* the document, or NULL */
   /* Into an object of `values`. STATUS_MISSING with the nearest name; STATUS_CONTENT: the document has a fault. */
   status (*load)(const char *name, void *material, struct error *error);
   /* The same from a file. *text is its content (malloc'd, owned by the caller). Also the errors of document_open. */
   status (*load_file)(const char *path, void *material, char **text, struct error *error);
+  /* The values that the text of a file does not give, and that scenes need beside the required ones; "" none. */
+  void (*also_needed)(const char *text, char *list, size_t size);
   /* Where a value of a named material comes from. STATUS_MISSING: the document does not say. */
   status (*source)(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);
 };

@@ -2,6 +2,7 @@
 #include "engine/scene.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -377,6 +378,7 @@ static struct scene *create(const struct engine_kind *kind) {
   scene->inputs = memory_small(1, kind->inputs->size);
   scene->given = memory_small(kind->inputs->count, sizeof *scene->given);
   scene->overridden = memory_small(kind->inputs->count, sizeof *scene->overridden);
+  scene->replaced = memory_small(kind->inputs->count, sizeof *scene->replaced);
   field_defaults(kind->inputs, scene->inputs);
   return scene;
 }
@@ -510,6 +512,7 @@ struct scene *scene_copy(const struct scene *scene) {
   memcpy(copy->inputs, scene->inputs, scene->kind->inputs->size);
   memcpy(copy->given, scene->given, scene->kind->inputs->count * sizeof *scene->given);
   memcpy(copy->overridden, scene->overridden, scene->kind->inputs->count * sizeof *scene->overridden);
+  memcpy(copy->replaced, scene->replaced, scene->kind->inputs->count * sizeof *scene->replaced);
   memcpy(copy->name, scene->name, sizeof copy->name);
   if (scene->settings_count == 0)
     return copy;
@@ -525,6 +528,7 @@ void scene_free(struct scene *scene) {
   free(scene->inputs);
   free(scene->given);
   free(scene->overridden);
+  free(scene->replaced);
   free(scene->settings);
   free(scene);
 }
@@ -619,8 +623,10 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
     field_copy_text(taken.text, strrchr(value->text, '/') ? strrchr(value->text, '/') + 1 : value->text);
   TRY(field_set(row, scene->inputs, &taken, error));
   scene->overridden[row - table->rows] = true;
-  if (is_open(row) && strcmp(before.text, value->text) != 0)
+  if (is_open(row) && strcmp(before.text, value->text) != 0) {
+    scene->replaced[row - table->rows] = true;
     TRY(change_material(scene, row, &before, value->text, error));
+  }
   scene->given[row - table->rows] = true;
   const struct field *other = other_name(scene->kind, row);
   if (other && !scene->overridden[other - table->rows])
@@ -663,6 +669,74 @@ bool scene_follows(const struct scene *scene, const struct field *row) {
   return field_same_value(row, &value, &completed);
 }
 
+/* With which lines an inactive input would have an effect, where its condition is a choice that needs more: the choice,
+ * and the numbers that are then missing. Else empty. */
+static void tell_needed(const struct scene *scene, const struct field *row, char *text, size_t size) {
+  const struct field_table *table = scene->kind->inputs;
+  const struct field *other = NULL, *link = field_unmet(table, row, scene->inputs, &other);
+  struct field_value choice;
+  struct error refused;
+  char missing[400] = "";
+  *text = 0;
+  if (!link || !other || other->kind != FIELD_CHOICE)
+    return;
+  SCENE with = scene_copy(scene);
+  snprintf(choice.text, sizeof choice.text, "%.*s", (int)strcspn(strchr(link->when, '=') + 1, "|"),
+           strchr(link->when, '=') + 1);
+  if (scene_set_text(with, other->path, choice.text, &refused))
+    return;
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *needed = &table->rows[i];
+    struct field_value value;
+    field_get(needed, with->inputs, &value);
+    if (needed->kind == FIELD_REAL && isnan(value.number) && !(needed->flags & FIELD_MAY_BE_OFF) &&
+        field_is_active(table, needed, with->inputs) && !field_is_active(table, needed, scene->inputs))
+      text_append(missing, sizeof missing, "%s%s (%s)", *missing ? ", " : "", needed->path, needed->unit);
+  }
+  if (*missing)
+    snprintf(text, size, "remove it, or set %s: %s and give %s (clast explain %s)", other->path, choice.text, missing,
+             other->path);
+}
+
+/* The name of the material that an override replaced and of which the row is a property; NULL: none. The file of a
+ * material gives all of its own. */
+static const struct field *replaced_name(const struct scene *scene, const struct field *row) {
+  const struct field_table *table = scene->kind->inputs;
+  const struct engine_materials *materials = scene->kind->materials;
+  for (size_t i = 0; materials && i < table->count; i++) {
+    const struct field *name = &table->rows[i];
+    struct field_value value;
+    if (!scene->replaced[i])
+      continue;
+    field_get(name, scene->inputs, &value);
+    const size_t section = (size_t)(strrchr(name->path, '.') + 1 - name->path);
+    if (strncmp(row->path, name->path, section) == 0 && field_is_choice(name, value.text))
+      return name;
+    for (size_t k = 0; materials->beside && materials->beside[k][0]; k++)
+      if (strcmp(row->path, materials->beside[k][0]) == 0 && strcmp(name->path, materials->beside[k][1]) == 0)
+        return name;
+  }
+  return NULL;
+}
+
+bool scene_next_kept(const struct scene *scene, struct scene_kept *kept) {
+  const struct field_table *table = scene->kind->inputs;
+  for (size_t i = kept->row ? (size_t)(kept->row - table->rows) + 1 : 0; i < table->count; i++) {
+    const struct field *row = kept->row = &table->rows[i];
+    kept->name = row->kind == FIELD_REAL && scene->given[i] && !scene->overridden[i] ? replaced_name(scene, row) : NULL;
+    if (!kept->name || !field_is_active(table, row, scene->inputs))
+      continue;
+    SCENE without = scene_copy(scene);
+    set_back(without, i);
+    field_get(row, scene->inputs, &kept->number);
+    field_get(row, without->inputs, &kept->without);
+    field_get(kept->name, scene->inputs, &kept->material);
+    if (!isnan(kept->number.number) && !field_same_value(row, &kept->number, &kept->without))
+      return true;
+  }
+  return false;
+}
+
 status scene_check(struct scene *scene, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   for (size_t i = 0; i < table->count; i++) {
@@ -671,10 +745,11 @@ status scene_check(struct scene *scene, struct error *error) {
       if (row->flags & FIELD_REQUIRED && !scene->given[i])
         return status_fail(error, STATUS_CONTENT, "%s: is missing and has no default; %s", row->path, row->doc);
     } else if (scene->overridden[i]) {
-      char why[600];
+      char why[600], needed[600];
       field_describe_inactive(table, row, scene->inputs, why, sizeof why);
-      return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; remove one or change the other",
-                         row->path, why);
+      tell_needed(scene, row, needed, sizeof needed);
+      return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; %s", row->path, why,
+                         *needed ? needed : "remove one or change the other");
     } else if (scene->given[i]) {
       set_back(scene, i);
     }

@@ -29,6 +29,7 @@ struct scene {
   void *inputs;                    /* kind->inputs->size bytes, SI, defaults filled */
   bool *given;                     /* per input row: set by the document or an override */
   bool *overridden;                /* per input row: set by an override */
+  bool *replaced;                  /* per input row: the name of a material, not the one of the document any more */
   char name[FIELD_TEXT_SIZE];      /* built-in name, or the document's own `name:` */
   struct scene_settings *settings; /* owned; NULL: none */
   size_t settings_count;
@@ -73,6 +74,15 @@ status scene_check(struct scene *scene, struct error *error);
 /* Does the row's value follow from the other inputs (FIELD_DERIVED)? True when the scene completes to the same value
  * without it, whether or not it was given. */
 bool scene_follows(const struct scene *scene, const struct field *row);
+
+/* An input whose number the document gives for its own material, while an override names another one. */
+struct scene_kept {
+  const struct field *row, *name;      /* the input, and the name of the material */
+  struct field_value number, material; /* of both */
+  struct field_value without;          /* what the input would be without the document's number */
+};
+/* The next one behind kept->row (NULL: the first). Numbers that the new material would give, too, are left out. */
+bool scene_next_kept(const struct scene *scene, struct scene_kept *kept);
 
 /* Lists the shape files that active inputs name (FIELD_FILE) and returns their number. The inputs hold the SHA-256 of a
  * file's content, so a run's identity depends on the content. Files that were not read are left out. */

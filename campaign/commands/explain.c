@@ -470,6 +470,7 @@ static status explain_scene(const struct scene *scene, enum table_format format,
   printf("%s, engine %s\n", scene->name, scene->kind->name);
   text_wrap_lines(description, WIDTH, stdout);
   text_wrap_lines(doubts, WIDTH, stdout);
+  campaign_tell_kept(scene, "", stdout);
   putchar('\n');
   TRY(print_inputs(scene, all, error));
   if (scene->settings_count > 0)

@@ -27,13 +27,20 @@ static status list(const struct engine_materials *materials, enum table_format f
   return table_end(table, error);
 }
 
-/* Prints the document of a named material, or checks a file and prints it unchanged. */
+/* Prints the document of a named material, or checks a file and prints it unchanged. A fluid needs no strength, so a
+ * file without it is none that is wrong. */
 static status print_document(const struct engine_materials *materials, const char *name, struct error *error) {
   OWNED void *material = memory_small(1, materials->values->size);
   OWNED char *text = NULL;
   const bool file = strchr(name, '/') || strchr(name, '.');
-  TRY(file ? materials->load_file(name, material, &text, error)
-           : materials->load(name, material, error)); /* names the nearest one */
+  const status code = file ? materials->load_file(name, material, &text, error)
+                           : materials->load(name, material, error); /* names the nearest one */
+  char needed[512] = "";
+  if (text)
+    materials->also_needed(text, needed, sizeof needed);
+  if (*needed)
+    fprintf(stderr, "clast: a scene whose body has strength also needs %s (`clast explain target.material`)\n", needed);
+  TRY(code);
   fputs(file ? text : materials->text(name), stdout);
   return STATUS_OK;
 }

@@ -177,6 +177,8 @@ struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out);
 /* The same for one scene, without a number of points. */
 void campaign_warn_scene(const struct scene *scene, const char *before, FILE *out);
+/* Only the numbers that a scene gives for its own material and that another one keeps (scene_next_kept()). */
+void campaign_tell_kept(const struct scene *scene, const char *before, FILE *out);
 
 /* Writes a list of points as a campaign's document, which `clast run` could compute: for the store of a study or a
  * fit. */

@@ -35,20 +35,57 @@ struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error
 
 /* ---- Collects the engine's warnings about the first points of a campaign ---- */
 
-enum { LOOKED_AT = 1000, LINE = 500 };
+enum { LOOKED_AT = 1000, LINE = 500, KEPT = 8 };
+
+/* A number that the scene gives for its own material and that others keep. */
+struct kept {
+  const struct field *row;
+  char number[64], others[LINE]; /* "granite 1.31 MPa, ..." */
+};
 
 struct doubts {
   size_t points, count[CONDITION_MOST];
   double number[CONDITION_MOST];    /* of the worst point with this warning */
   bool differ[CONDITION_MOST];      /* this number differs between the points */
   char worst[CONDITION_MOST][LINE]; /* the engine's text for it */
+  struct kept kept[KEPT];
 };
+
+/* Is `other`, up to a comma, in the list? */
+static bool has_other(const char *others, const char *other) {
+  const size_t length = strlen(other);
+  for (const char *at = others; (at = strstr(at, other)); at++)
+    if ((at == others || at[-1] == ' ') && (at[length] == ',' || at[length] == '\0'))
+      return true;
+  return false;
+}
+
+static void add_kept(struct doubts *doubts, const struct scene *scene) {
+  for (struct scene_kept found = {0}; scene_next_kept(scene, &found);) {
+    char value[FIELD_TEXT_SIZE], other[2 * FIELD_TEXT_SIZE];
+    size_t k = 0;
+    while (k < KEPT && doubts->kept[k].row && doubts->kept[k].row != found.row)
+      k++;
+    if (k == KEPT)
+      return;
+    struct kept *kept = &doubts->kept[k];
+    field_show(found.row, &found.number, value, sizeof value);
+    snprintf(kept->number, sizeof kept->number, "%.60s", value);
+    field_show(found.row, &found.without, value, sizeof value);
+    other[0] = 0;
+    text_append(other, sizeof other, "%s: %s", found.material.text, value);
+    if (!has_other(kept->others, other) && strlen(kept->others) + strlen(other) < LINE - 8)
+      text_append(kept->others, sizeof kept->others, "%s%s", kept->row ? ", " : "", other);
+    kept->row = found.row;
+  }
+}
 
 /* The engine writes its lines in the order of the bits. */
 static void add(struct doubts *doubts, const struct scene *scene) {
   OWNED char *text = NULL;
   FILE *out = text_open(&text);
   doubts->points++;
+  add_kept(doubts, scene);
   const condition_set set = condition_before(scene->kind->conditions, scene->inputs, out);
   const char *line = text_close_small(out, &text);
   for (size_t k = 0; k < CONDITION_MOST; k++) {
@@ -87,10 +124,30 @@ static void print(const struct doubts *doubts, const char *before, bool counted,
   }
 }
 
+static void print_kept(const struct doubts *doubts, const char *before, FILE *out) {
+  for (size_t k = 0; k < KEPT && doubts->kept[k].row; k++) {
+    const struct kept *kept = &doubts->kept[k];
+    char text[2 * LINE + 300] = "";
+    text_append(text, sizeof text,
+                "%s: the scene gives %s for its own material, and other materials keep it. Their own would be "
+                "%s. Give them what you mean, in `vary` as {linked: ..., values: [...]} (campaign/README.md, A rock of "
+                "your own)",
+                kept->row->path, kept->number, kept->others);
+    print_line(text, before, out);
+  }
+}
+
+void campaign_tell_kept(const struct scene *scene, const char *before, FILE *out) {
+  struct doubts doubts = {0};
+  add_kept(&doubts, scene);
+  print_kept(&doubts, before, out);
+}
+
 void campaign_warn_scene(const struct scene *scene, const char *before, FILE *out) {
   struct doubts doubts = {0};
   add(&doubts, scene);
   print(&doubts, before, false, out);
+  print_kept(&doubts, before, out);
 }
 
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out) {
@@ -104,6 +161,7 @@ void campaign_warn(const struct campaign *campaign, const char *before, FILE *ou
         add(&doubts, scene);
     }
   print(&doubts, before, doubts.points > 1, out);
+  print_kept(&doubts, before, out);
 }
 
 /* ---- Writes campaigns of lists. JSON values are YAML ---- */

@@ -350,9 +350,10 @@ static void tell_shape(size_t pools, size_t agree, size_t differ, const struct m
   else if (agree + differ == 0)
     words_print(stdout, "",
                 judged[0] == judged[1]
-                    ? "no verdict on the shape: it needs %zu runs of two fragments or more from there on, and has %zu"
-                    : "no verdict on the shape: it needs %zu runs of two fragments or more from there on; the rows "
-                      "have %zu to %zu",
+                    ? "no verdict on the shape: it needs %zu runs of two fragments or more from the mass in column "
+                      "`from` on, and has %zu"
+                    : "no verdict on the shape: it needs %zu runs of two fragments or more from the mass in column "
+                      "`from` on; the rows have %zu to %zu",
                 match->needed, judged[0], judged[1]);
   else if (pools > 1)
     words_print(
@@ -396,11 +397,15 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   struct ask_doubts sum = {0};
   size_t count = 0, agree = 0, differ = 0;
   struct measured_match last = {.share = NAN, .needed = MATCH_RUNS, .together = 1};
-  bool nothing = false; /* a spectrum has no fragment above the mass where all are complete */
+  bool nothing = false;                           /* a spectrum has no fragment above the mass where all are complete */
+  bool empty = false, lone = false, told = false; /* which one; and a row has a distance */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     struct measured_match match;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
     nothing |= !isfinite(match.distance);
+    empty |= match.simulated.mean == 0; /* NaN: the measured spectrum has none */
+    lone |= !isfinite(match.distance) && !(match.simulated.mean == 0);
+    told |= isfinite(match.distance);
     match.needed = match.needed > last.needed ? match.needed : last.needed;
     last = match;
     count++;
@@ -447,10 +452,15 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
         measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,
-              "clast: no distance: from there on there is no simulated fragment, or only one measured %s. The heaviest "
+              "clast: no distance%s: from the mass in column `from` on there is %s%s%s%s. The heaviest "
               "measured %s %.3g %s, the heaviest simulated fragment has %.3g %s\n",
-              measured->single ? "fragment" : "class", measured->single ? "fragment has" : "class begins at",
-              measured->n ? measured->mass[measured->n - 1] : 0, measured->bodies ? "kg" : kg, heaviest, kg);
+              told ? " in some rows" : "", empty ? "no simulated fragment" : "", empty && lone ? ", or " : "",
+              lone ? "at most one measured " : "",
+              !lone              ? ""
+              : measured->single ? "fragment"
+                                 : "class",
+              measured->single ? "fragment has" : "class begins at", measured->n ? measured->mass[measured->n - 1] : 0,
+              measured->bodies ? "kg" : kg, heaviest, kg);
     for (size_t i = 0; !measured->weighed && i < measured->n; i++) {
       const double beyond = i + 1 < measured->n ? measured->above[i + 1] : 0;
       given += measured->mass[i] * (measured->single ? 1 : measured->above[i] - beyond); /* at least, with thresholds */

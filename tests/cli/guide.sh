@@ -8,7 +8,7 @@ awk '/^```/ { kind = substr($0, 4); file = ""; next }
   kind == "yaml" && !file && /^# .*\.yaml$/ { file = $2 }
   kind == "yaml" && file { print > file }
   kind == "sh" { print > "commands" }' "$guide"
-same "$(ls ./*.yaml | tr '\n' ' ')" "./accurate.yaml ./forms.yaml ./guide.yaml ./levels.yaml ./measured.yaml ./my-rock.yaml ./unknown.yaml ./until.yaml " "campaigns of the guide"
+same "$(ls ./*.yaml | tr '\n' ' ')" "./accurate.yaml ./forms.yaml ./guide.yaml ./levels.yaml ./measured.yaml ./my-rock.yaml ./rocks.yaml ./unknown.yaml ./until.yaml " "campaigns of the guide"
 
 mkdir -p bin
 ln -s "$clast" bin/clast

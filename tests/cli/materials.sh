@@ -148,4 +148,35 @@ printf 'name: two\nscene: %s\ndesign: {file: points/two.csv}\nseeds: 1\nstore: t
 scene basalt >s.yaml
 expect 0 "$clast" run far/two.yaml --store two.db --quiet
 same "$(sqlite3 two.db "select count(*) from run")" 2 "runs of a file of points with a material's file"
-done_after 55
+
+# A file tells at once all that it lacks; one that a body without strength can use is none that is wrong.
+printf 'material: bare\n' >bare.yaml
+expect 65 "$clast" materials bare.yaml
+says "also needs melt_energy (or off), shear_modulus, yield_stress (or off), tension_limit (or off), weibull.m (or off), weibull.k"
+"$clast" materials granite | sed '/^tension_limit/d; /^sources/,/^  weibull/d' >most.yaml
+expect 0 "$clast" materials most.yaml
+says "also needs tension_limit (or off) ("
+expect 0 "$clast" materials rocks/other.yaml
+silent err
+
+# A scene's own number of its rock: other rocks keep it, and the user is told theirs.
+printf 'name: kept\nscene: basalt-sphere\nset: {fidelity.particles: 1000, fidelity.projectile_spacing: 1}\nvary: {target.material: [basalt, granite]}\n' >kept.yaml
+expect 0 "$clast" plan kept.yaml --no-trial
+tr -s ' \n' ' ' <out | grep -q 'warning fragments.static_strength: the scene gives 1.7e7 Pa .* Their own would be granite: 1314510 Pa' || fail "granite with the strength of basalt"
+expect 0 "$clast" explain basalt-sphere --set target.material=granite
+prints "fragments.static_strength: the scene gives 1.7e7 Pa"
+sed -i 's/granite\]/granite], fragments.static_strength: {linked: target.material, values: [17 MPa, 1.31 MPa]}/' kept.yaml
+expect 0 "$clast" plan kept.yaml --no-trial
+grep -q 'the scene gives' out && fail "a number that the campaign gives"
+for given in "target.material=basalt" "fragments.static_strength=2e6 Pa" "target.material.weibull.m=9"; do
+  "$clast" explain basalt-sphere --set "$given" | grep -q 'the scene gives' && fail "a number of the scene's own rock: $given"
+done
+# A scene's own value of a material that another one replaces.
+printf 'engine: sph\nname: own\ntarget: {radius: 3 cm, material: {name: basalt, weibull: {m: 9}}}\nimpact: {projectile: mass, mass: 0.2 g, speed: 3 km/s}\n' >own.yaml
+expect 0 "$clast" explain ./own.yaml --set target.material=granite
+prints "target.material.weibull.m: the scene gives 9"
+
+# Pores: the first message names all that they need.
+expect 65 "$clast" explain basalt-sphere --set "target.material.porosity.fraction=20 %"
+says "remove it, or set target.material.porosity.curve: quadratic and give target.material.porosity.elastic_pressure (Pa), target.material.porosity.solid_pressure (Pa)"
+done_after 63

@@ -51,6 +51,14 @@ PY
 ok "distances from a measured spectrum"
 expect 0 "$clast" spectrum small.db --point 1 --with measured.csv # the first line answers
 head -2 out | tr '\n' ' ' | grep -Eq '^no verdict on the shape: it needs 20 runs .* has [0-3] ' || fail "no word on 3 runs"
+tr '\n' ' ' <out | grep -q 'from the mass in column `from` on, and has' || fail "runs from which mass on"
+# Why there is no distance: what is missing is named.
+printf 'mass (kg), count\n5000, 3\n' >heavy.csv
+expect 0 "$clast" spectrum small.db --point 1 --with heavy.csv
+says 'no distance: from the mass in column `from` on there is no simulated fragment. The heaviest'
+printf 'mass (kg)\n1e-9\n' >lone.csv
+expect 0 "$clast" spectrum small.db --point 1 --with lone.csv
+says 'no distance: from the mass in column `from` on there is at most one measured fragment. The heaviest'
 expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2
 far=$("$clast" spectrum many.db --point 1 --with measured.csv --json | sed -n 's/.*runs_as_far": \([0-9.]*\).*/\1/p')
 expect 0 "$clast" spectrum many.db --point 1 --with measured.csv
@@ -392,4 +400,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 142
+done_after 144

@@ -5,6 +5,7 @@
 #include "engine/builtin.h"
 #include "engine/scene.h"
 #include "engine/sph/material/material.h"
+#include "schemas/memory.h"
 
 #define MATERIAL sph_material
 
@@ -71,8 +72,9 @@ static void read_sources(document_node *sources) {
   }
 }
 
+static const char *const own_keys[] = {"material", "source", "sources", "like", NULL};
+
 static status read_material(struct document *document, struct sph_material *out, struct error *error) {
-  static const char *const own_keys[] = {"material", "source", "sources", "like", NULL};
   struct error unknown;
   field_defaults(&sph_materials_table, out);
   document_node *root = document_root(document);
@@ -126,6 +128,32 @@ status sph_materials_source(const char *name, const char *path, char source[FIEL
   return source[0] ? STATUS_OK : STATUS_MISSING;
 }
 
+bool sph_materials_must_give(const char *path) {
+  static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k", NULL};
+  return text_is_one_of(path, must);
+}
+
+static void also_needed(const char *text, char *list, size_t size) {
+  struct sph_material material;
+  DOCUMENT document = NULL;
+  struct error unknown;
+  OWNED bool *given = memory_small(sph_materials_table.count, sizeof *given);
+  *list = '\0';
+  if (document_parse("material", text, strlen(text), &document, &unknown))
+    return;
+  field_defaults(&sph_materials_table, &material);
+  document_node *root = document_root(document);
+  if (scene_material_complete(root, &sph_materials, &unknown))
+    return;
+  document_read_given(root, &sph_materials_table, own_keys, &material, given, NULL);
+  for (size_t i = 0; i < sph_materials_table.count; i++) {
+    const char *path = sph_materials_table.rows[i].path;
+    const bool shear = strcmp(path, "shear_modulus") == 0; /* no body with strength can be without */
+    if (!given[i] && (shear || sph_materials_must_give(path)))
+      text_append(list, size, "%s%s%s", *list ? ", " : "", path, shear ? "" : " (or off)");
+  }
+}
+
 status sph_materials_load(const char *name, void *out, struct error *error) {
   const char *text = sph_materials_text(name);
   if (text)
@@ -145,6 +173,7 @@ static const char *const overview[][2] = {{"density", "density"},
                                           {"weibull_m", "weibull.m"},
                                           {"weibull_k", "weibull.k"},
                                           {NULL, NULL}};
+static const char *const beside[][2] = {{"fragments.static_strength", "target.material.name"}, {NULL, NULL}};
 const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .overview = overview,
                                                .not_values = not_values,
@@ -152,10 +181,12 @@ const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                           "bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus: E / "
                                                           "(2 (1 + nu))",
                                                .either = {"porosity.distention", "porosity.fraction"},
+                                               .beside = beside,
                                                .name = sph_materials_name,
                                                .text = sph_materials_text,
                                                .load = sph_materials_load,
                                                .load_file = sph_materials_open,
+                                               .also_needed = also_needed,
                                                .source = sph_materials_source};
 
 /* Elastic constants, wave speeds and crack speeds that follow from a material. */

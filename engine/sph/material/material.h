@@ -98,6 +98,9 @@ status sph_materials_parse(const char *name, const char *text, struct sph_materi
 /* The same from a file. *text is its content (malloc'd, owned by the caller). Also returns the errors of document_open.
  */
 status sph_materials_open(const char *path, void *out, char **text, struct error *error);
+/* Values that may be off and must be given all the same, at least as off: without a yield stress a body is elastic at
+ * any stress. */
+bool sph_materials_must_give(const char *path);
 /* Where a value of a named material comes from, by the document's `sources` (the value's or its section's), else its
  * `source`. STATUS_MISSING: the document does not say. */
 status sph_materials_source(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);

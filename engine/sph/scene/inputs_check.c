@@ -104,12 +104,11 @@ static status check_material(const struct sph_inputs *in, const char *body_name,
   return STATUS_OK;
 }
 
-/* Values that may be off must be set to off explicitly: without a yield stress a body is elastic at any stress. */
+/* Values that may be off must be set to off explicitly. */
 static bool must_be_given(const struct field *row, const char *body) {
-  static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k", NULL};
   const size_t length = strlen(body);
   return strncmp(row->path, body, length) == 0 && strncmp(row->path + length, ".material.", 10) == 0 &&
-         text_is_one_of(row->path + length + 10, must);
+         sph_materials_must_give(row->path + length + 10);
 }
 
 status sph_inputs_check_given(const void *scene, const bool *given, struct error *error) {
