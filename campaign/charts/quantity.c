@@ -581,6 +581,13 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "; thin bars add what is known of it", resolution, sizeof resolution);
   snprintf(caption, sizeof caption, "Error bars: %s; %s", intervals, resolution);
+  size_t weak = 0;
+  for (size_t i = 0; i < quantity->count; i++)
+    weak += quantity->row[i].weak && isfinite(quantity->row[i].value);
+  if (weak > 0)
+    text_append(caption, sizeof caption, "; %zu of the marks: %s", weak,
+                quantity->exponent ? "no interval (clast explain weak)"
+                                   : "a weak interval, too few runs (~ in tables)");
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);
   if (*quantity->changing)

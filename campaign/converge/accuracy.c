@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "campaign/converge/study.h"
 #include "campaign/terminal/words.h"
@@ -556,8 +557,9 @@ static status name_widest(const struct finding *finding, struct store *store, st
 
 static status no_study(const struct campaign *campaign, const char *path, const char *store, struct error *error) {
   return status_fail(error, STATUS_CONTENT,
-                     "accuracy: %s has no study of %s for this campaign. Make it: `clast converge %s --quantity %s`",
-                     store, campaign->accuracy_quantity, path, campaign->accuracy_quantity);
+                     "accuracy: %s%s has no study of %s for this campaign. Make it: `clast converge %s --quantity %s`",
+                     store, access(store, F_OK) == 0 ? "" : " does not exist yet, so it", campaign->accuracy_quantity,
+                     path, campaign->accuracy_quantity);
 }
 
 status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,

@@ -173,10 +173,15 @@ const char *design_axis_show_point(size_t count, const struct design_axis *axes,
   *text = '\0';
   for (size_t i = 0; i < count; i++) {
     struct field_value value;
-    char shown[VALUE_SIZE];
-    const char *word = strrchr(axes[i].row->path, '.');
+    char shown[VALUE_SIZE], path[FIELD_TEXT_SIZE];
+    field_copy_text(path, axes[i].row->path);
+    char *word = strrchr(path, '.');
+    if (word && axes[i].row->kind == FIELD_TEXT && strcmp(word, ".name") == 0) { /* "material", as tables call it */
+      *word = '\0';
+      word = strrchr(path, '.');
+    }
     field_get(axes[i].row, inputs, &value);
-    text_append(text, size, "%s%s %s", i ? ", " : "", word ? word + 1 : axes[i].row->path,
+    text_append(text, size, "%s%s %s", i ? ", " : "", word ? word + 1 : path,
                 design_axis_show(&axes[i], &value, shown, sizeof shown));
   }
   return text;

@@ -297,8 +297,8 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
   fflush(stdout); /* what follows comes below the table */
   if (idle && legend)
     fprintf(stderr,
-            "clast: left out: %zu point%s without runs: not yet computed, or settings of a study that had no time "
-            "(--csv and --json have %s)\n",
+            "clast: left out: %zu point%s without runs: not yet computed, or settings of a study that it did "
+            "not run, since the law of the others tells them (--csv and --json have %s)\n",
             idle, idle == 1 ? "" : "s", idle == 1 ? "it" : "them");
   const struct ask_doubts_choice doubts = {.campaign = choice->campaign};
   TRY(quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error));

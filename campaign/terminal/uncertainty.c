@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_DECIMALS = 15 };
@@ -25,9 +26,13 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
   }
   const double size = fmax(fabs(value), half_width);
   if (size < SMALL || (size >= LARGE && last_decade(half_width) >= THOUSANDS)) { /* (3.3 +- 0.2)e-05 */
-    const double decade = floor(log10(size));
+    double decade = floor(log10(size));
     char digits[UNCERTAINTY_TEXT];
     uncertainty_number(value / pow(10, decade), half_width / pow(10, decade), digits);
+    if (fabs(strtod(digits, NULL)) >= 10) { /* 9.7 +- 2 became 10 +- 2 */
+      decade++;
+      uncertainty_number(value / pow(10, decade), half_width / pow(10, decade), digits);
+    }
     snprintf(text, UNCERTAINTY_TEXT, "(%.40s)e%+03d", digits, (int)decade);
     return;
   }

@@ -121,6 +121,15 @@ static status judge(const struct choice *choice, const char *what, const char *n
     return STATUS_OK;
   if (choice->matches > 1)
     return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: it may be %s.", what, name, choice->matching);
+  enum exponent_method method;
+  enum estimates_window window;
+  struct error other;
+  bool exponent = false;
+  if (strcmp(what, "Quantity") == 0 && !estimates_named(name, &exponent, &method, &window, &other) && exponent)
+    return status_fail(error, STATUS_USAGE,
+                       "'%s' is an exponent of all runs of a point together: no run has a value of it, so this command "
+                       "cannot use it. `clast estimates` has it, `clast plot` and `clast map` draw it",
+                       name);
   if (choice->near[0])
     return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, name, choice->near);
   if (strcmp(what, "Quantity") == 0) /* of a hundred */

@@ -150,4 +150,22 @@ says "beta 1.6~: no interval, since without one of the runs a bin is empty"
 grep -q 'weak, too few' err && fail "a share is called weak that is not"
 expect 0 "$clast" explain weak
 prints "a bin is empty (LSQ)"
-done_after 42
+# The material of a point is called as in tables; a store that is not there has no study, and says which of the two.
+printf 'name: rocks\nscene: basalt-sphere\nset: {fidelity.particles: 1000, fidelity.projectile_spacing: 1}\nvary: {target.material: [basalt, granite]}\n' >rocks.yaml
+expect 0 "$clast" plan rocks.yaml --no-trial
+prints "the most expensive point, material "
+tiny exact 'accuracy: {quantity: largest_fraction, within: 5 %}'; sed -i /^seeds/d exact.yaml
+expect 65 "$clast" plan exact.yaml --no-trial
+says "accuracy: exact.db does not exist yet, so it has no study of largest_fraction"
+# No run has an exponent of its own, and commands that need one say so.
+for command in scatter sensitivity; do
+  expect 64 "$clast" "$command" open.db -Q beta
+  says "'beta' is an exponent of all runs of a point together"
+done
+expect 0 "$clast" explain impact.angle
+prints "+x"
+# A plot tells of weak intervals, as a map does.
+expect 0 "$clast" run few.yaml --seeds 3 --quiet
+expect 0 "$clast" plot few.db weak.svg -x strain --by angle -Q largest_fraction
+tr -s '\n' ' ' <weak.svg | sed 's/<[^>]*>/ /g' | tr -s ' ' | grep -q 'of the marks: a weak interval' || fail "a plot without a word on weak intervals"
+done_after 49

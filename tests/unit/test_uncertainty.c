@@ -18,6 +18,7 @@ static void seeds(void **state) {
       {{.mean = 4321.6, .half_width = 34}, "4320 ± 30 (seeds, 95 %)"},
       {{.mean = -2.5e-20, .half_width = 3e-22}, "(-2.50 ± 0.03)e-20 (seeds, 95 %)"},
       {{.mean = 3.321e-5, .half_width = 1.66e-6}, "(3.32 ± 0.17)e-05 (seeds, 95 %)"},
+      {{.mean = 9.7e-4, .half_width = 2e-4}, "(1.0 ± 0.2)e-03 (seeds, 95 %)"}, /* not (10 ± 2)e-04 */
       {{.mean = 4.061e7, .half_width = 1.5e6}, "(4.06 ± 0.15)e+07 (seeds, 95 %)"},
       {{.mean = 1234567, .half_width = 340}, "1234600 ± 300 (seeds, 95 %)"}, /* five digits are no long row of zeros */
       {{.mean = 999999, .half_width = 4e4}, "1000000 ± 40000 (seeds, 95 %)"},

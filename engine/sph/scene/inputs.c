@@ -144,11 +144,13 @@ static const struct field rows[] = {
                 "speed."),
     REAL(impact.speed, "m/s", 3200, 0, 1e6, .when = "kind=impact", .label = "impact speed",
          .doc = "Speed of the projectile; the target is at rest.", .source = "BA95 section 5.2"),
-    REAL(impact.angle, "rad", 0, 0, 1.5707963267948966, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=impact",
-         .label = "impact angle",
-         .doc =
-             "Angle between the flight and the inward normal where the projectile hits (the target's upper side, z).",
-         .source = "BA95 section 5.2"),
+    REAL(
+        impact.angle, "rad", 0, 0, 1.5707963267948966, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=impact",
+        .label = "impact angle",
+        .doc =
+            "Angle between the flight and the inward normal where the projectile hits (the target's upper side, z). It "
+            "flies down and to the side of +x.",
+        .source = "BA95 section 5.2"),
     REAL(impact.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=impact",
          .doc = "Distance of the projectile's surface from the target's at the start, along the normal; one particle "
                 "spacing of the target there unless given."),
