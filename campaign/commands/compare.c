@@ -19,17 +19,73 @@ static bool print(struct table *table, bool people, const struct ask_pairs_row *
   table_integer(table, row->point[0]);
   table_integer(table, row->point[1]);
   table_text(table, people ? inputs : row->inputs);
+  const bool untold = people && (row->untold[0] || row->untold[1]);
   for (int k = 0; k < 2; k++)
-    table_integer(table, (int64_t)row->difference.n[k]);
+    table_integer(table, (int64_t)row->runs[k]);
   table_integer(table, (int64_t)row->difference.pairs);
   for (int k = 0; k < 2; k++) {
     table_rests_on(table, row->doubts[k]);
-    table_real(table, row->difference.mean[k]);
+    table_real(table, people && row->untold[k]            ? (double)NAN
+                      : isfinite(row->difference.mean[k]) ? row->difference.mean[k]
+                                                          : row->exponent[k]);
   }
   table_rests_on(table, &both);
-  table_reals(table, 2, (const double[]){row->difference.difference, row->difference.half_width});
+  table_real(table, untold ? (double)NAN : row->difference.difference);
+  table_real(table, untold ? (double)NAN : row->difference.half_width);
   table_doubt_cells(table, &both);
-  return isnan(row->difference.half_width) && row->difference.n[0] > 1 && row->difference.n[1] > 1;
+  return !untold && isnan(row->difference.half_width) && row->difference.n[0] > 1 && row->difference.n[1] > 1;
+}
+
+enum { NAMED = 4 }; /* most points in a message */
+
+/* The exponents that the table leaves out. */
+struct untold {
+  char reason[300], points[2][200]; /* of a and of b */
+  size_t count[2];
+  bool no_interval; /* of one that the table has */
+};
+
+static void note_untold(struct untold *untold, const struct ask_pairs_row *row) {
+  for (int k = 0; k < 2; k++) {
+    untold->no_interval |= !row->untold[k] && isfinite(row->exponent[k]) && row->difference.n[k] == 0;
+    if (!row->untold[k])
+      continue;
+    pooled_exponent_tell(row->untold[k], untold->reason, sizeof untold->reason);
+    if (untold->count[k]++ < NAMED)
+      text_append(untold->points[k], sizeof untold->points[k], "%s%lld", untold->count[k] > 1 ? ", " : " ",
+                  (long long)row->point[k]);
+  }
+}
+
+/* "beta_masses_from_5 -: not known to a whole number: fewer than 5 fragments: point 1 of a" */
+static status tell_untold(const struct untold *untold, const char *quantity, struct error *error) {
+  OWNED char *text = NULL;
+  bool exponent;
+  enum exponent_method method;
+  enum estimates_window window;
+  if (untold->no_interval)
+    fputs("clast: no difference where an exponent has no interval: without one of its runs there is no fit\n", stderr);
+  if (!*untold->reason)
+    return STATUS_OK;
+  TRY(estimates_named(quantity, &exponent, &method, &window, error));
+  FILE *out = text_open(&text);
+  fprintf(out, "clast: beta_%s_%s -: %s:", exponent_method_names[method], estimates_window_names[window],
+          untold->reason);
+  for (int k = 0; k < 2; k++) {
+    if (untold->count[k] == 0)
+      continue;
+    fprintf(out, "%s point%s%s", k && untold->count[0] ? ";" : "", untold->count[k] == 1 ? "" : "s", untold->points[k]);
+    if (untold->count[k] > NAMED)
+      fprintf(out, " and %zu more", untold->count[k] - NAMED);
+    fprintf(out, " of %c", 'a' + k);
+  }
+  if (window > ESTIMATES_FROM_2)
+    fprintf(out, ". `-Q beta_%s_%s` takes lighter fragments, too", exponent_method_names[method],
+            estimates_window_names[ESTIMATES_FROM_2]);
+  if (!text_close(out, &text))
+    return status_fail(error, STATUS_MEMORY, "no memory for the table");
+  fprintf(stderr, "%s\n", text);
+  return STATUS_OK;
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -44,9 +100,11 @@ static status run(const struct command_line *line, struct error *error) {
                                                       "mean_b", "difference", "hw95", NULL});
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
+  struct untold untold = {0};
   bool equal = false, part = false; /* part: runs without a partner */
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);) {
     equal = print(table, people, &row, &doubts) || equal;
+    note_untold(&untold, &row);
     part |= row.difference.pairs &&
             (row.difference.pairs < row.difference.n[0] || row.difference.pairs < row.difference.n[1]);
   }
@@ -64,6 +122,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (*apart)
     fprintf(stderr, "clast: a and b also differ in %s\n", apart);
   if (people) {
+    TRY(tell_untold(&untold, ask_pairs_quantity(pairs), error));
     uncertainty_doubts(&doubts, stderr);
     fprintf(stderr,
             "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "

@@ -453,6 +453,9 @@ struct ask_pairs_row {
   const char *label[2]; /* varied inputs of each for people: "strain 3 %, angle 4 deg" */
   struct difference difference;
   const struct ask_doubts *doubts[2];
+  size_t runs[2];        /* of an exponent also where difference.n is 0: they have none, or none with an interval */
+  const char *untold[2]; /* why tables for people show no exponent (pooled_exponent_untold()); NULL: they show it */
+  double exponent[2];    /* also one without an interval, which has no difference.mean; NaN: another quantity */
 };
 
 /* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. Of an exponent ("beta", estimates_named()) they

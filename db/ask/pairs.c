@@ -16,6 +16,9 @@ struct group {  /* the runs of one point */
   int64_t point;
   bool paired;
   size_t first, count; /* in `values` */
+  size_t runs;         /* that have a value or, of an exponent, that count */
+  double exponent;     /* of the runs together; NaN: of another quantity */
+  const char *untold;  /* why tables for people show no exponent; NULL: they show it */
   struct ask_doubts doubts;
 };
 #define SEPARATOR '\n' /* char(10) in SQL */
@@ -64,7 +67,7 @@ static status add_run(struct side *side, const struct answer *row, struct error 
   if (side->group_count == 0 || side->groups[side->group_count - 1].point != point) {
     TRY(grow_or_fail(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups, "the runs", error));
     struct group *group = &side->groups[side->group_count++];
-    *group = (struct group){.point = point, .first = side->value_count};
+    *group = (struct group){.point = point, .first = side->value_count, .exponent = NAN};
     group->list = strdup(side->one_point ? "" : answer_text(row, 0));
     group->inputs = group->list ? readable(group->list) : NULL;
     if (!group->inputs)
@@ -73,6 +76,7 @@ static status add_run(struct side *side, const struct answer *row, struct error 
   TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values, "the runs", error));
   side->values[side->value_count++] = (struct difference_value){answer_integer(row, 2), answer_real(row, 3)};
   side->groups[side->group_count - 1].count++;
+  side->groups[side->group_count - 1].runs++;
   return STATUS_OK;
 }
 
@@ -94,6 +98,7 @@ static status read_exponents(struct store *store, enum exponent_method method, e
   for (size_t i = 0; i < side->group_count; i++) {
     POINT_DATA point = {0};
     OWNED double *contribution = NULL;
+    struct pooled_exponent fit;
     struct group *group = &side->groups[i];
     TRY(point_read(store, group->point, 0, &point, error));
     const size_t runs = point.runs.count;
@@ -103,6 +108,9 @@ static status read_exponents(struct store *store, enum exponent_method method, e
     TRY(point_exponent_of_runs(&point, method, window, contribution, error));
     group->first = side->value_count;
     group->count = runs > 0 && isfinite(contribution[0]) ? runs : 0;
+    TRY(point_exponent(store, group->point, 0, method, window, 0.95, &fit, error));
+    group->untold = pooled_exponent_untold(&fit);
+    group->exponent = fit.fit.beta;
     for (size_t r = 0; r < group->count; r++)
       side->values[side->value_count++] = (struct difference_value){(int64_t)point.seed[r], contribution[r]};
     qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
@@ -217,7 +225,10 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
                                   {first->label, second->label},
                                   sample_difference(first->count, a->values + first->first, second->count,
                                                     b->values + second->first, 0.95),
-                                  {&first->doubts, &second->doubts}};
+                                  {&first->doubts, &second->doubts},
+                                  {first->runs, second->runs},
+                                  {first->untold, second->untold},
+                                  {first->exponent, second->exponent}};
     pairs->found++;
     return true;
   }

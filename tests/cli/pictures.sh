@@ -177,6 +177,12 @@ grep -q '×: not known to a whole number: an interval of ± 2 or wider' beta.txt
 expect 0 "$clast" estimates small.db
 same "$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)" "$(awk 'NF == 7 && $6 == 1' beta.dat | wc -l)" "exponents that neither table nor map has"
 says "beta -: not known to a whole number: an interval of ± 2 or wider"
+withheld=$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)
+expect 0 "$clast" compare small.db small.db -Q beta_masses_from_2
+same "$(grep -c ' 3  *3  *[0-9]*  *-  *-  *-$' out)" "$withheld" "exponents that a comparison does not have either"
+says "clast: beta_masses_from_2 -: not known to a whole number: an interval of ± 2 or wider: point"
+expect 0 "$clast" compare small.db small.db -Q beta
+says "\`-Q beta_masses_from_2\` takes lighter fragments, too"
 expect 64 "$clast" map small.db none.png -x strain -y angle -Q beta
 says "no point has an exponent to draw: not known to a whole number: fewer than 5 fragments"
 # The command in a caption has the quantity, and its interval is none the narrower.
@@ -400,4 +406,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 144
+done_after 147
