@@ -11,13 +11,14 @@ knob_path AS MATERIALIZED (SELECT DISTINCT l.base_point_id, l.knob, i.path
   FROM level l JOIN point_input i ON i.point_id = l.point_id
     LEFT JOIN point_input b ON b.point_id = l.base_point_id AND b.path = i.path WHERE i.value IS NOT b.value),
 -- A point belongs to a study, too, if it differs from the scene studied in settings of knobs only.
+scene AS MATERIALIZED (SELECT point_id, group_concat(path || quote(value)) AS inputs
+  FROM (SELECT point_id, path, value FROM point_input
+    WHERE point_id IN (SELECT point_id FROM level UNION SELECT base_point_id FROM level)
+      AND path NOT IN (SELECT path FROM knob_path) ORDER BY point_id, path)
+  GROUP BY point_id),
 kin AS MATERIALIZED (SELECT p.point_id, s.base_point_id
-  FROM (SELECT DISTINCT point_id FROM level) p, (SELECT DISTINCT base_point_id FROM level) s
-  WHERE NOT EXISTS (SELECT 1 FROM point_input i LEFT JOIN point_input b ON b.point_id = s.base_point_id
-      AND b.path = i.path WHERE i.point_id = p.point_id AND i.value IS NOT b.value
-      AND i.path NOT IN (SELECT path FROM knob_path))
-    AND NOT EXISTS (SELECT 1 FROM point_input b LEFT JOIN point_input i ON i.point_id = p.point_id AND i.path = b.path
-      WHERE b.point_id = s.base_point_id AND i.value IS NULL AND b.path NOT IN (SELECT path FROM knob_path))),
+  FROM (SELECT DISTINCT base_point_id FROM level) s JOIN scene b ON b.point_id = s.base_point_id
+    JOIN scene p USING (inputs)),
 -- There, it has the error of a knob whose setting it has.
 of_kin AS (SELECT k.point_id, l.results_version, l.quantity, l.knob, l.resolution AS error, coalesce(l.open, 1) AS open
   FROM kin k JOIN level l USING (base_point_id)
