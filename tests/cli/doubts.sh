@@ -283,7 +283,7 @@ expect 0 "$clast" query --help
 named=$(sed '/^options:/q' out | grep -o '[a-z_][a-z_]*(' | sort -u | xargs)
 same "$named" "doubts( hist_sum( median( stdev(" "functions in the help of query"
 for function in $named; do
-  "$clast" query marked.db "select $function)" >out 2>err
+  expect 64 "$clast" query marked.db "select $function)"
   says "wrong number of arguments to function $function)"
 done
-done_after 123
+done_after 127
