@@ -487,10 +487,11 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
                   "formula (pyabc, on `clast serve`) fits without that.",
                   label, found);
     if (beyond(fit, k) < 0.025)
-      words_print(out, "", "MISFIT: %s %s well: at most %.2g of predicted experiments lie %s it.",
+      words_print(out, "", "MISFIT: %s %s well: at most %.2g of predicted experiments lie %s it%s.",
                   fit->observed->datum_count > 1 ? "the inputs that suit all data together do not predict"
                                                  : "no inputs within the priors predict",
-                  label, fmax(beyond(fit, k), 1e-4), below < 0.5 ? "below" : "above");
+                  label, fmax(beyond(fit, k), 1e-4), below < 0.5 ? "below" : "above",
+                  fit->counts[k] ? " or within half a fragment (column below: without the half)" : "");
     if (fit->surfaces.left_out[k] > 1.5)
       words_print(
           out, "",

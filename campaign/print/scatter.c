@@ -98,12 +98,13 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
         pools.quantity, SCATTER_SHAPE_RUNS);
   }
   if (table_for_people(format) && isfinite(choice->half_width))
-    words_print(stderr, "",
-                "clast: runs needed: for this half width in a table, and until seeds.until ends, if the scatter stays "
-                "as it is. The rule looks in steps of %d runs from %d on. It takes Student's interval, made wider so "
-                "that values which are alike by chance do not end it: it needs about 58 runs where a table needs 30, "
-                "105 for 90 and 227 for 220",
-                SAMPLE_BATCH, SAMPLE_FIRST);
+    words_print(
+        stderr, "",
+        "clast: runs needed: for this half width in a table, and until seeds.until ends, if the scatter stays "
+        "as it is. The rule looks in steps of %d runs from %d on. It takes Student's interval, made wider so "
+        "that values which are alike by chance do not end it: about 58 runs where Student's needs 30, 105 for 90 "
+        "and 227 for 220. In a table a share has a wider interval than Student's",
+        SAMPLE_BATCH, SAMPLE_FIRST);
   if (several)
     fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
           "independent\n",
