@@ -694,8 +694,8 @@ static void tell_needed(const struct scene *scene, const struct field *row, char
       text_append(missing, sizeof missing, "%s%s (%s)", *missing ? ", " : "", needed->path, needed->unit);
   }
   if (*missing)
-    snprintf(text, size, "remove it, or set %s: %s and give %s (clast explain %s)", other->path, choice.text, missing,
-             other->path);
+    text_append(text, size, "remove it, or set %s: %s and give %s (clast explain %s)", other->path, choice.text,
+                missing, other->path);
 }
 
 /* The name of the material that an override replaced and of which the row is a property; NULL: none. The file of a
