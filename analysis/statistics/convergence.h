@@ -30,7 +30,7 @@
  *
  * A law whose limit lies outside of what the result can have (a share above 1) costs as much in -2 ln(likelihood) as
  * the limit is outside, in squares of its standard deviation. If the best law with that cost is rejected against the
- * best one without, no limit is seen.
+ * best one without, no limit is seen. The cost counts for the limit; a prediction for a finite step needs no limit.
  *
  * Only a law that the levels contradict is told from a right one. Two errors that cancel within the noise on all
  * levels, or a law that changes beyond the finest level, look like a limit that is reached

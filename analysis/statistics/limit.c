@@ -45,6 +45,7 @@ struct fit {
   double power[TERMS]; /* of the terms; that of the limit is 0 */
   size_t terms, dropped;
   double deviance; /* -2 ln(likelihood) and costs, less that of the best fit */
+  double cost;     /* of the limit alone, cost_of_range(): at a finite step the law still says where the levels lead */
   double tail;     /* share of samples of the law that are farther from it than the levels */
   double found[DRAWS][TERMS], covariance[DRAWS][TERMS][TERMS], weight[DRAWS];
 };
@@ -402,13 +403,14 @@ static struct limit_range range_of(const struct work *work, const struct quantit
   for (size_t i = 0; i < work->count; i++) {
     const struct fit *fit = &work->fits[i];
     double mean[DRAWS], deviation[DRAWS];
-    if (fit->deviance >= rejected)
+    const double deviance = fit->deviance + (q->limit != 0 && !(q->step > 0) ? fit->cost : 0);
+    if (deviance >= rejected)
       continue;
     if (q->level && (*q->level < fit->dropped || *q->level < q->dropped))
       measure(work, fit, *q->level, mean, deviation);
     else
       evaluate(work, fit, q, mean, deviation);
-    const double tail = gsl_cdf_ugaussian_Q(sqrt(rejected - fit->deviance)), likelihood = exp(-fit->deviance / 2);
+    const double tail = gsl_cdf_ugaussian_Q(sqrt(rejected - deviance)), likelihood = exp(-deviance / 2);
     extend(mean, deviation, fit->weight, tail, &range.low);
     extend(mean, deviation, fit->weight, 1 - tail, &range.high);
     for (size_t d = 0; d < DRAWS; d++)
@@ -447,8 +449,8 @@ static double cost_of_range(const struct limit_ladder *ladder, const struct work
   return outside > 0 ? outside * outside / fmax(square - centre * centre, 0) : 0;
 }
 
-/* Makes all fits, and finds how many levels must be dropped. Of laws that agree with the levels, those with a possible
- * limit count: without one, no limit is seen. */
+/* Makes all fits, and finds how many levels must be dropped. No limit is seen, too, where the laws that agree with the
+ * levels have no possible one. */
 static void find_law(const struct limit_ladder *ladder, struct work *work, double rejected, struct limit_law *law) {
   const double low = ladder->order_least > 0 ? ladder->order_least : LIMIT_ORDER_LEAST;
   const double high = ladder->order_most > 0 ? ladder->order_most : LIMIT_ORDER_MOST;
@@ -459,8 +461,10 @@ static void find_law(const struct limit_ladder *ladder, struct work *work, doubl
     add_fits(work, dropped, low, high, rejected);
   double best = HUGE_VAL, possible = HUGE_VAL;
   for (size_t i = 0; i < work->count; i++) {
-    best = fmin(best, work->fits[i].deviance);
-    possible = fmin(possible, work->fits[i].deviance + cost_of_range(ladder, work, &work->fits[i]));
+    struct fit *fit = &work->fits[i];
+    fit->cost = cost_of_range(ladder, work, fit);
+    best = fmin(best, fit->deviance);
+    possible = fmin(possible, fit->deviance + fit->cost);
   }
   for (size_t i = 0; i < work->count; i++)
     work->fits[i].deviance -= possible;
