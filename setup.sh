@@ -145,7 +145,7 @@ END
       exit
     fi
     counted=$(mktemp)
-    trap 'rm -f "$counted"; say "told apart:$lines"' EXIT
+    trap 'rm -f "$counted"; say "time of each part:$lines"' EXIT
     told_since "packages"
     lines=
     build ci

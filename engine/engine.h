@@ -60,7 +60,7 @@ struct engine_materials {
   /* Inputs of a scene outside of its materials that are properties of one: path of the input, path of the material's
    * name; ended by NULL. */
   const char *const (*beside)[2];
-  const char *(*name)(size_t index);     /* sorted; NULL beyond the last */
+  const char *(*name)(size_t index);     /* sorted; NULL right behind the last; no index beyond that */
   const char *(*text)(const char *name); /* the document, or NULL */
   /* Into an object of `values`. STATUS_MISSING with the nearest name; STATUS_CONTENT: the document has a fault. */
   status (*load)(const char *name, void *material, struct error *error);

@@ -533,9 +533,16 @@ static void find_ranges(const struct limit_ladder *ladder, const struct work *wo
     const double step = points[i].step, own = 1 / (double)data->seeds;
     points[i].mean = range_of(work, &(struct quantity){.limit = 1, .step = step}, rejected);
     points[i].sample = range_of(work, &(struct quantity){.limit = 1, .step = step, .noise = own}, rejected);
-    points[i].distance = range_of(work, &(struct quantity){.step = step}, rejected);
+    size_t coarser = 0; /* the level before the point: where a law leaves it out, its distance is that of the point */
+    while (coarser + 1 < data->levels && data->step[coarser + 1] >= step)
+      coarser++;
+    const struct quantity distance = {.step = step,
+                                      .level = data->step[coarser] >= step ? &coarser : NULL,
+                                      .dropped = law->dropped};
+    points[i].distance = range_of(work, &distance, rejected);
     cut(ladder->least, ladder->most, &points[i].mean);
     cut(ladder->least, ladder->most, &points[i].sample);
+    cut(points[i].mean.value - ladder->most, points[i].mean.value - ladder->least, &points[i].distance);
   }
 }
 

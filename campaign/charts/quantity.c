@@ -350,6 +350,10 @@ void quantity_tell_resolutions(struct store *store, const char *names, const str
 /* "0.02 m/s", "5 %": an error, or its share of a mean. */
 static void show_error(double error, bool of_value, const char *unit, char *text, size_t size) {
   const double number = of_value ? 100 * error : error;
+  if (isinf(number)) { /* a share of the mean 0 */
+    snprintf(text, size, "no share of its mean, which is 0");
+    return;
+  }
   snprintf(text, size, of_value && number >= 99.5 ? "%.0f%s%s" : "%.3g%s%s", number, *unit && !of_value ? " " : "",
            of_value ? " %" : unit);
 }
@@ -374,7 +378,7 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
     if (isnan(mean) || answer_integer(&groups, count + RUNS) < 2)
       continue;
     const double total = (isnan(spread) ? 0 : spread) + (isnan(resolution) ? 0 : resolution); /* NaN: equal runs */
-    const double compared = of_value ? total / fabs(mean) : total;
+    const double compared = !of_value ? total : total > 0 ? total / fabs(mean) : 0;
     points++;
     not_studied += isnan(resolution);
     kept += compared <= within;

@@ -88,9 +88,10 @@ static bool marks_all(const struct condition *list, const char *word) {
   return false;
 }
 
+enum { RESTS = 1024 };
+
 /* Appends the words of the conditions on which a result of an engine rests, besides those on which all rest; a withheld
  * one in parentheses. `path` NULL: the words on which all rest. */
-enum { RESTS = 1024 };
 static void rests_on(const struct engine_kind *kind, const char *path, char words[RESTS]) {
   const char *last = "", *before = "";
   for (const struct condition *c = kind->conditions; c && c->word; c++) {

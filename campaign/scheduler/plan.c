@@ -166,6 +166,7 @@ struct looking {
   uint64_t asked, there;      /* runs looked up in the store */
   uint64_t timed;             /* of those that are there, with their times: */
   double wall_s, wall_s_most; /* sum and longest */
+  double cpu_s;               /* sum of processor time */
   /* With `until`: runs that the rule needs by those in the store, and how many of these are there; points that ended.
    */
   uint64_t least, most, judged_there, ended;
@@ -191,15 +192,16 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
     uint8_t identity[16];
     scene_identity(scene, campaign_seed(campaign, scene, r), identity);
     looking->asked++;
-    double seconds = NAN;
+    double seconds, cpu_s;
     struct error ignored;
     if (!store_has_run(store, identity))
       continue;
     looking->there++;
-    if (ask_run_wall_time(store, identity, &seconds, &ignored) || isnan(seconds))
+    if (ask_run_wall_time(store, identity, &seconds, &cpu_s, &ignored) || isnan(seconds))
       continue;
     looking->timed++;
     looking->wall_s += seconds;
+    looking->cpu_s += cpu_s;
     looking->wall_s_most = fmax(looking->wall_s_most, seconds);
   }
 }
@@ -407,8 +409,12 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
     plan->run_s_mean = looking->wall_s / (double)looking->timed;
     plan->run_s_most = looking->wall_s_most;
   }
-  plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
-  plan->cpu_s_most = (double)(plan->runs_most - plan->runs_there) * (plan->run_s_mean + SLOT_S + MANAGER_S);
+  plan->run_s_most = fmax(plan->run_s_most, plan->run_s_mean); /* points are timed apart, with noise */
+  /* Runs of the store have both times: on a busy machine the processor time is shorter. */
+  const bool stored = !plan->trial_made && looking->timed && looking->cpu_s > 0;
+  const double cpu_s = (stored ? looking->cpu_s / (double)looking->timed : plan->run_s_mean) + SLOT_S + MANAGER_S;
+  plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * cpu_s;
+  plan->cpu_s_most = (double)(plan->runs_most - plan->runs_there) * cpu_s;
   const double run_wall_s = plan->run_s_mean / plan->threads;
   plan->wall_s_least = wall_time(plan->runs_least - plan->runs_there, run_wall_s, options->slots);
   plan->wall_s_most = wall_time(plan->runs_most - plan->runs_there, run_wall_s, options->slots);
@@ -443,7 +449,8 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK && !trial && looking.timed == 0 && store &&
       !scene->kind->work) /* all points count as one work */
-    code = ask_run_wall_times(store, scene->name, &looking.timed, &looking.wall_s, &looking.wall_s_most, error);
+    code = ask_run_wall_times(store, scene->name, &looking.timed, &looking.wall_s, &looking.wall_s_most, &looking.cpu_s,
+                              error);
   if (code == STATUS_OK) {
     plan->model = scene->kind->describe ? scene->kind->describe(scene->inputs, options->all) : NULL;
     if (scene->kind->work) /* else all points count as one work */

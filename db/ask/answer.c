@@ -72,14 +72,14 @@ static void suggest_columns(sqlite3 *db, const char *message, char *names, size_
   snprintf(typed, sizeof typed, "_%.120s", message + strlen(no_column));
   for (char *dot = typed; (dot = strchr(dot, '.'));)
     *dot = '_';
-  if (sql_prepare(db, "SELECT name FROM pragma_table_info('runs') WHERE substr('_' || name, -length(?1)) = ?1 LIMIT 4",
+  if (sql_prepare(db, "SELECT name FROM pragma_table_info('runs') WHERE substr(name, -length(?1)) = ?1 LIMIT 4",
                   &columns, "looking for a column", &ignored))
     return;
   sqlite3_bind_text(columns, 1, typed, -1, SQLITE_STATIC);
   while (sqlite3_step(columns) == SQLITE_ROW)
     text_append(found, sizeof found, "%s%s", *found ? ", " : "", (const char *)sqlite3_column_text(columns, 0));
   if (*found)
-    snprintf(names, size, ". The column is called %s", found);
+    snprintf(names, size, ". The view runs has %s", found);
 }
 
 static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {

@@ -726,22 +726,30 @@ status ask_run_masses(struct store *store, int64_t run_id, double **masses, size
   return STATUS_OK;
 }
 
-status ask_run_wall_time(struct store *store, const uint8_t identity[16], double *seconds, struct error *error) {
+status ask_run_wall_time(struct store *store, const uint8_t identity[16], double *seconds, double *cpu_s,
+                         struct error *error) {
   char hexadecimal[33];
   text_hex(identity, 16, hexadecimal);
-  return answer_number(store, seconds, error, "SELECT wall_time FROM run WHERE identity = x'%s'", hexadecimal);
+  ANSWER answer = answer_to(store, error, "SELECT wall_time, cpu_time FROM run WHERE identity = x'%s'", hexadecimal);
+  *seconds = *cpu_s = NAN;
+  if (answer_next(&answer)) {
+    *seconds = answer_real(&answer, 0);
+    *cpu_s = answer_real(&answer, 1);
+  }
+  return answer_end(&answer);
 }
 
 status ask_run_wall_times(struct store *store, const char *scene, uint64_t *count, double *sum, double *most,
-                          struct error *error) {
+                          double *cpu_s, struct error *error) {
   ANSWER answer = answer_to(store, error,
-                            "SELECT count(wall_time), sum(wall_time), max(wall_time) FROM run JOIN point USING "
-                            "(point_id) WHERE scene_name = %Q",
+                            "SELECT count(wall_time), sum(wall_time), max(wall_time), sum(cpu_time) FROM run JOIN "
+                            "point USING (point_id) WHERE scene_name = %Q",
                             scene);
   if (answer_next(&answer)) {
     *count = (uint64_t)answer_integer(&answer, 0);
     *sum = answer_real(&answer, 1);
     *most = answer_real(&answer, 2);
+    *cpu_s = answer_real(&answer, 3);
   }
   return answer_end(&answer);
 }

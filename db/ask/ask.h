@@ -338,11 +338,13 @@ status ask_run_masses(struct store *store, int64_t run_id, double **masses, size
 /* Ejecta of one run. stored: the store has some, which it has not of runs of older programs. */
 status ask_run_ejecta(struct store *store, int64_t run_id, struct ejecta *ejecta, bool *stored, struct error *error);
 
-/* Wall time of a stored run in s. NaN: it is not there. */
-status ask_run_wall_time(struct store *store, const uint8_t identity[16], double *seconds, struct error *error);
-/* Wall times of all stored runs of a scene, by its name: number, sum and longest. */
+/* Wall time and processor time of a stored run in s. NaN: it is not there. */
+status ask_run_wall_time(struct store *store, const uint8_t identity[16], double *seconds, double *cpu_s,
+                         struct error *error);
+/* Wall times of all stored runs of a scene, by its name: number, sum and longest; and the sum of their processor times.
+ */
 status ask_run_wall_times(struct store *store, const char *scene, uint64_t *count, double *sum, double *most,
-                          struct error *error);
+                          double *cpu_s, struct error *error);
 
 /* One row per run that counts and has its fields kept, of each point's newest results_version: run_id, point_id, seed,
  * the varied inputs, the main results, `warnings`, and last `fields`. */

@@ -1,5 +1,4 @@
 /* A store as a file: its place and lock, opening and closing, upgrades, copies, batches and sessions. */
-
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -20,8 +20,9 @@ kin AS MATERIALIZED (SELECT p.point_id, s.base_point_id
   FROM (SELECT DISTINCT base_point_id FROM level) s JOIN scene b ON b.point_id = s.base_point_id
     JOIN scene p USING (inputs)),
 -- There, it has the error of a knob whose setting it has.
-of_kin AS (SELECT k.point_id, l.results_version, l.quantity, l.knob, l.resolution AS error, coalesce(l.open, 1) AS open
-  FROM kin k JOIN level l USING (base_point_id)
+of_kin AS (SELECT k.point_id, l.results_version, l.quantity, l.knob, l.resolution AS error, o.diverges,
+    coalesce(l.open, 1) AS open
+  FROM kin k JOIN level l USING (base_point_id) JOIN of_knob o USING (base_point_id, results_version, quantity, knob)
   WHERE l.resolution IS NOT NULL AND NOT EXISTS (SELECT 1 FROM knob_path q
     LEFT JOIN point_input i ON i.point_id = l.point_id AND i.path = q.path
     LEFT JOIN point_input n ON n.point_id = k.point_id AND n.path = q.path
@@ -41,7 +42,7 @@ of_point AS (SELECT point_id, results_version, quantity, sum(error) AS error, ma
   FROM (SELECT point_id, results_version, quantity, knob, max(error) AS error, max(diverges) AS diverges,
       max(open) AS open
     FROM (SELECT point_id, results_version, quantity, knob, error, diverges, open FROM of_study WHERE NOT named
-      UNION ALL SELECT point_id, results_version, quantity, knob, error, false, open FROM of_kin)
+      UNION ALL SELECT point_id, results_version, quantity, knob, error, diverges, open FROM of_kin)
     GROUP BY point_id, results_version, quantity, knob)
   GROUP BY point_id, results_version, quantity
   UNION ALL SELECT s.point_id, s.results_version, s.quantity, abs(s.bias) + s.bias_half_width + r.error, r.diverges,
