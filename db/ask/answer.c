@@ -72,7 +72,7 @@ static void suggest_columns(sqlite3 *db, const char *message, char *names, size_
   snprintf(typed, sizeof typed, "_%.120s", message + strlen(no_column));
   for (char *dot = typed; (dot = strchr(dot, '.'));)
     *dot = '_';
-  if (sql_prepare(db, "SELECT name FROM pragma_table_info('runs') WHERE substr(name, -length(?1)) = ?1 LIMIT 4",
+  if (sql_prepare(db, "SELECT name FROM pragma_table_info('runs') WHERE substr('_' || name, -length(?1)) = ?1 LIMIT 4",
                   &columns, "looking for a column", &ignored))
     return;
   sqlite3_bind_text(columns, 1, typed, -1, SQLITE_STATIC);
