@@ -88,6 +88,13 @@ for said in after/*.said; do
   grep -q '1 run is excluded and left out (`clast exclude [a-z]*.db` lists it)' "$said" || fail "$said does not say it: $(cat "$said")"
   ok "$said says it"
 done
+for operand in one.db:1 one.db:one; do # the command that is told takes the store alone
+  expect 0 "$clast" report "$operand" -o page.html
+  says "\`clast exclude one.db\` lists it"
+  expect 0 "$clast" compare "$operand" "$operand"
+  says "\`clast exclude one.db\` lists it"
+  rm page.html
+done
 for before in before/*.csv before/*.dat; do
   cmp -s "$before" "after/$(basename "$before")" && fail "$before: the answer holds the excluded run"
   ok "$before: another answer without the run"
@@ -214,4 +221,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 103
+done_after 107
