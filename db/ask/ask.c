@@ -57,10 +57,10 @@ void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *share
 
 int64_t ask_campaign_levels(struct store *store) {
   double points = 0;
-  const status code =
-      answer_number(store, &points, NULL,
-                    "SELECT count(*) FROM points AS p WHERE point_id IN (SELECT point_id FROM campaign_point) AND %s",
-                    POINT_IS_OF_NO_CAMPAIGN(""));
+  const status code = answer_number(
+      store, &points, NULL,
+      "SELECT count(*) FROM points AS p WHERE n > 0 AND point_id IN (SELECT point_id FROM campaign_point) AND %s",
+      POINT_IS_OF_NO_CAMPAIGN(""));
   return code == STATUS_OK ? (int64_t)points : 0;
 }
 

@@ -54,7 +54,7 @@ double ask_campaign_silence(struct store *store);
 /* The earlier forms of campaigns (ask_campaign_progress()), the points that several other campaigns have, not those of
  * one search or study alone, and the runs of all campaigns, each once. 0 where the store does not tell. */
 void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *shared, int64_t *runs);
-/* Number of chosen points that only a study (clast converge) or a search (find, fit) has. */
+/* Number of chosen points with runs that count that only a study (clast converge) or a search (find, fit) has. */
 int64_t ask_campaign_levels(struct store *store);
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */

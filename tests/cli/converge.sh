@@ -162,6 +162,11 @@ expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j
 same "$(number tiny.db "select count(distinct base_point_id) from convergence")" 4 "points studied"
 expect 0 "$clast" stats tiny.db
 says "points are of studies and searches"
+cp tiny.db less.db # points without runs are in no table
+# shellcheck disable=SC2046
+expect 0 "$clast" exclude less.db $("$clast" query less.db 'select run_id from run where point_id = 1' --csv | tail -n +2) --reason none
+expect 0 "$clast" stats less.db --csv
+says "clast: $(awk -F , 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "points") k = i; next } { n += $k } END { print n }' out) of these points are of studies and searches"
 
 # Questions to a store with a campaign leave the points of studies out.
 expect 0 "$clast" run tiny.yaml -j 2
@@ -597,4 +602,4 @@ expect 65 "$clast" converge bad.yaml --list
 says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 153
+done_after 155
