@@ -48,12 +48,17 @@ static status show_inputs(struct store *store, const char *target, struct error 
   TRY(answer_end(&different));
   for (size_t i = 0; i < count; i++)
     TRY(scheduler_show_input(store, rows[i], error));
-  if (count)
-    fprintf(stderr,
-            "clast: warning: campaigns of one scene, or forms of one campaign, differ in %s: %s of %s from now on "
-            "(--by). `clast stats %s "
-            "--campaign NAME` takes one campaign alone\n",
-            names, count == 1 ? "it is a varied input" : "they are varied inputs", target, target);
+  if (count == 0)
+    return STATUS_OK;
+  char numbers[ASK_CAMPAIGN_NUMBERS] = "";
+  TRY(ask_campaign_namesakes(store, NULL, numbers, sizeof numbers, error));
+  fprintf(
+      stderr,
+      "clast: warning: campaigns of one scene, or forms of one campaign, differ in %s: %s of %s from now on (--by). "
+      "`clast stats %s --campaign %.*s` takes one campaign alone%s%s%s\n",
+      names, count == 1 ? "it is a varied input" : "they are varied inputs", target, target,
+      *numbers ? (int)strcspn(numbers, ",") : (int)strlen("NAME"), *numbers ? numbers : "NAME",
+      *numbers ? "; campaigns " : "", numbers, *numbers ? " have one name" : "");
   return STATUS_OK;
 }
 

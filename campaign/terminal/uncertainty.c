@@ -95,6 +95,12 @@ void uncertainty_excluded(int64_t count, const char *store) {
             count == 1 ? " is" : "s are", store, count == 1 ? "it" : "them");
 }
 
+void uncertainty_namesakes(const char *numbers, const char *campaign) {
+  if (*numbers)
+    fprintf(stderr, "clast: campaigns %s are called %s: --campaign %.*s takes one alone\n", numbers, campaign,
+            (int)strcspn(numbers, ","), numbers);
+}
+
 void uncertainty_left_out(int64_t points) {
   if (points > 0)
     fprintf(stderr,

@@ -64,6 +64,42 @@ int64_t ask_campaign_levels(struct store *store) {
   return code == STATUS_OK ? (int64_t)points : 0;
 }
 
+/* min(point_id) stands for a campaign: inputs that it does not vary are those of all its points. */
+status ask_campaign_namesakes(struct store *store, const char *name, char *numbers, size_t size, struct error *error) {
+  int64_t count = 0;
+  *numbers = '\0';
+  TRY(sql_integerf(store->db, &count, error,
+                   "SELECT count(*) - count(DISTINCT name) FROM campaign WHERE (%Q IS NULL OR name = %Q) AND NOT %s",
+                   name, name, CAMPAIGN_IS_ROUND));
+  if (count == 0)
+    return STATUS_OK;
+  ANSWER answer = answer_to(
+      store, error,
+      "WITH " EARLIER ",\n"
+      "form AS MATERIALIZED (SELECT campaign_id, name, (SELECT group_concat(path) FROM (SELECT j.value AS path FROM "
+      "json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j ORDER BY 1)) AS axes, (SELECT min(point_id) FROM "
+      "main.campaign_point AS c WHERE c.campaign_id = campaign.campaign_id) AS first FROM campaign WHERE (%Q IS NULL "
+      "OR name = %Q) AND NOT %s AND campaign_id NOT IN earlier)\n"
+      "SELECT group_concat(campaign_id, ', ') FROM (SELECT * FROM form ORDER BY campaign_id) AS f GROUP BY name HAVING "
+      "count(*) > 1 AND (count(DISTINCT ifnull(axes, '')) > 1 OR EXISTS (SELECT 1 FROM main.axis AS a JOIN form AS g "
+      "WHERE g.name = f.name AND instr(',' || ifnull(g.axes, '') || ',', ',' || a.path || ',') = 0 GROUP BY a.path "
+      "HAVING "
+      "count(DISTINCT ifnull((SELECT quote(value) FROM main.point_input AS i WHERE i.point_id = g.first AND i.path = "
+      "a.path), '')) > 1)) ORDER BY min(campaign_id) LIMIT 1",
+      name, name, CAMPAIGN_IS_ROUND);
+  if (!answer_next(&answer))
+    return answer_end(&answer);
+  const char *all = answer_text(&answer, 0);
+  if ((size_t)snprintf(numbers, size, "%s", all) >= size) /* whole numbers only */
+    for (size_t end = size - sizeof ", ..."; end > 0; end--)
+      if (numbers[end] == ',') {
+        numbers[end] = '\0';
+        text_append(numbers, size, ", ...");
+        break;
+      }
+  return STATUS_OK;
+}
+
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error) {
   ANSWER
   answer = answer_to(store, error,

@@ -56,6 +56,10 @@ double ask_campaign_silence(struct store *store);
 void ask_campaign_overlaps(struct store *store, int64_t *earlier, int64_t *shared, int64_t *runs);
 /* Number of chosen points with runs that count that only a study (clast converge) or a search (find, fit) has. */
 int64_t ask_campaign_levels(struct store *store);
+/* "1, 2": the campaigns that have this name (NULL: the first name that several have) and vary other inputs, or differ
+ * in one that they do not vary; "": none. Rounds of a study or search and earlier forms of a campaign do not count. */
+enum { ASK_CAMPAIGN_NUMBERS = 64 };
+status ask_campaign_namesakes(struct store *store, const char *name, char *numbers, size_t size, struct error *error);
 
 /* Name and YAML text of a campaign (0: the last one); the caller frees both. Both NULL: the store has no campaign. */
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error);
@@ -469,6 +473,8 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
 const char *ask_pairs_quantity(const struct ask_pairs *pairs);
 /* The next pair, in the order of the points of A; its texts are borrowed from `pairs`. False at the end. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
+/* ask_campaign_namesakes() of the campaign of a side (0, 1), and that campaign (NULL: none), both borrowed. */
+const char *ask_pairs_namesakes(const struct ask_pairs *pairs, int side, const char **campaign);
 /* The runs of a side (0, 1) that a person excluded, its ask_choice_left_out(), and the path of its store, borrowed. */
 int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path);
 /* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. The caller

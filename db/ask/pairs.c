@@ -24,10 +24,11 @@ struct group {  /* the runs of one point */
 #define SEPARATOR '\n' /* char(10) in SQL */
 
 struct side {
-  char path[LIMITS_PATH];   /* of the store */
-  int64_t excluded;         /* runs that a person excluded */
-  int64_t left_out;         /* ask_choice_left_out() */
-  struct ask_choice choice; /* its texts are borrowed from the operands */
+  char path[LIMITS_PATH];               /* of the store */
+  int64_t excluded;                     /* runs that a person excluded */
+  int64_t left_out;                     /* ask_choice_left_out() */
+  struct ask_choice choice;             /* its texts are borrowed from the operands */
+  char namesakes[ASK_CAMPAIGN_NUMBERS]; /* of the chosen campaign */
   bool one_point;
   struct group *groups;
   struct difference_value *values;
@@ -152,6 +153,8 @@ static status read_side(struct ask_pairs *pairs, const char *operand, struct ask
   STORE store = NULL;
   TRY(store_open_reader(side->path, &store, error));
   TRY(ask_choose(store, &choice, error));
+  if (choice.campaign)
+    TRY(ask_campaign_namesakes(store, choice.campaign, side->namesakes, sizeof side->namesakes, error));
   TRY(ask_quantity_main(store, pairs->main, &pairs->quantity, error));
   TRY(read_values(store, pairs->quantity, side, error));
   if (side->group_count > 0)
@@ -233,6 +236,11 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
     return true;
   }
   return false;
+}
+
+const char *ask_pairs_namesakes(const struct ask_pairs *pairs, int side, const char **campaign) {
+  *campaign = pairs->side[side].choice.campaign;
+  return pairs->side[side].namesakes;
 }
 
 int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path) {
@@ -376,9 +384,15 @@ status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
   if (pairs->found > 0)
     return STATUS_OK;
   write_apart(pairs, apart, sizeof apart);
-  return status_fail(
-      error, STATUS_USAGE,
-      "no two points have the same varied inputs%s. Name campaigns that vary the same (STORE:CAMPAIGN), or two "
-      "points: `clast compare %s:%lld %s:%lld`",
-      apart, a->path, (long long)a->groups[0].point, b->path, (long long)b->groups[0].point);
+  char advice[256] = "Name campaigns that vary the same (STORE:CAMPAIGN)";
+  for (int k = 1; k >= 0; k--)
+    if (*pairs->side[k].namesakes)
+      snprintf(advice, sizeof advice,
+               "Campaigns %s of %.64s are called %.64s: give that store alone with --campaign %.*s, the other as "
+               "STORE:CAMPAIGN",
+               pairs->side[k].namesakes, pairs->side[k].path, pairs->side[k].choice.campaign,
+               (int)strcspn(pairs->side[k].namesakes, ","), pairs->side[k].namesakes);
+  return status_fail(error, STATUS_USAGE,
+                     "no two points have the same varied inputs%s. %s, or two points: `clast compare %s:%lld %s:%lld`",
+                     apart, advice, a->path, (long long)a->groups[0].point, b->path, (long long)b->groups[0].point);
 }

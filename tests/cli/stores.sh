@@ -203,6 +203,33 @@ says "For one form alone"
 expect 0 "$clast" estimates files.db
 same "$(head -1 out | tr -s ' ' | cut -d " " -f 1-5)" "point material speed density runs" "inputs of changed files"
 
+# Two campaigns of one name: the name takes both, and says that a number takes one.
+one twin '' '' 2
+sed -i 's/^store: .*//' twin.yaml
+expect 0 "$clast" run twin.yaml -j 1 --quiet --store first.db
+expect 0 "$clast" run twin.yaml -j 1 --quiet --store second_twin.db --set contact.friction=0.3
+expect 0 "$clast" merge twins.db first.db second_twin.db
+says "\`clast stats twins.db --campaign 1\` takes one campaign alone; campaigns 1, 2 have one name"
+expect 0 "$clast" stats twins.db --campaign twin
+says "campaigns 1, 2 are called twin: --campaign 1 takes one alone"
+expect 0 "$clast" report twins.db:twin -o twins.html
+says "campaigns 1, 2 are called twin"
+expect 0 "$clast" compare twins.db:twin twins.db:twin
+says "campaigns 1, 2 are called twin"
+expect 64 "$clast" compare twins.db:twin first.db
+says "Campaigns 1, 2 of twins.db are called twin: give that store alone with --campaign 1, the other as STORE:CAMPAIGN"
+expect 0 "$clast" compare twins.db first.db:twin --campaign 1
+expect 0 "$clast" stats twins.db --campaign 1
+! grep -q "are called" err || fail "a number takes one"
+expect 0 "$clast" stats first.db --campaign twin
+! grep -q "are called" err || fail "first.db has one campaign"
+one form '' '' 2 # an earlier form of a campaign is no other one
+expect 0 "$clast" run form.yaml -j 1 --quiet
+one form '' '' 3
+expect 0 "$clast" run form.yaml -j 1 --quiet
+expect 0 "$clast" stats form.db --campaign form
+! grep -q "are called" err || fail "a form is no other campaign"
+
 # A changed `set` in the same store is told; the same campaign with more seeds is not.
 one changed
 expect 0 "$clast" run changed.yaml -j 1 --quiet
@@ -307,4 +334,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 110
+done_after 123
