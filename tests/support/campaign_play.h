@@ -31,6 +31,7 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
   campaign->scene->inputs = calloc(1, toy_engine.inputs->size);
   campaign->scene->given = calloc(toy_engine.inputs->count, sizeof *campaign->scene->given);
   campaign->scene->overridden = calloc(toy_engine.inputs->count, sizeof *campaign->scene->overridden);
+  campaign->scene->replaced = calloc(toy_engine.inputs->count, sizeof *campaign->scene->replaced);
   field_defaults(toy_engine.inputs, campaign->scene->inputs);
   ((struct toy_inputs *)campaign->scene->inputs)->stick.trouble = true;
   campaign->axis_count = 2;
