@@ -164,7 +164,7 @@ def try_store(numbered):
     allowed = make(path, changes, value, everywhere)
     with lock:
         changed += allowed
-    turn = ready if full or len(changes) > 1 else (ready * 2)[3 * number % len(ready) :][:3]
+    turn = ready if full or len(changes) > 1 else (ready * 2)[6 * number % len(ready) :][:6]
     for argv in [*(commands(path, out, turn) if prints else []), *(pictures(path, out) if draws else [])] if allowed else []:
         names = [f"{table}.{name}" for table, columns in changes for name, _ in columns] if full else [table for table, _ in changes]
         what = f"{' '.join(names)} = {value}{'' if everywhere else ' in one row'}: clast {' '.join(argv)}"
