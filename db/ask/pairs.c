@@ -368,11 +368,11 @@ static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) 
       if ((both && (k == 0 || is_common(pairs, input, path))) || count++ >= NAMED)
         continue;
       text_append(text, size, "%s", *text ? ", " : ": ");
-      text_append(text, size, "%s %.*s",
-                  both ? "no common value of"
-                  : k  ? "only B varies"
-                       : "only A varies",
-                  (int)path, input);
+      const char *store = strcmp(pairs->side[0].path, pairs->side[1].path) != 0 ? pairs->side[k].path : k ? "B" : "A";
+      if (both)
+        text_append(text, size, "no common value of %.*s", (int)path, input);
+      else
+        text_append(text, size, "only %.64s varies %.*s", store, (int)path, input);
     }
   if (count > NAMED)
     text_append(text, size, " and %zu more inputs", count - NAMED);
@@ -380,7 +380,7 @@ static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) 
 
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];
-  char apart[NAMED * (FIELD_TEXT_SIZE + 24)];
+  char apart[NAMED * (FIELD_TEXT_SIZE + 88)];
   if (pairs->found > 0)
     return STATUS_OK;
   write_apart(pairs, apart, sizeof apart);
