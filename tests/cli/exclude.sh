@@ -161,7 +161,7 @@ expect 64 "$clast" query one.db "select threshold.strain from runs"
 says "The view runs has threshold_strain"
 expect 64 "$clast" stats one.db --where "1) ; DELETE FROM run --"
 expect 0 "$clast" plot one.db chosen.svg -x strain --where "replicate < 2" --keep-script
-sed 's/.\."\\n"\../ /g' chosen.gp | grep -q "only replicate < 2" || fail "the caption does not tell the choice"
+grep -qF "only replicate < 2" <(sed 's/.\."\\n"\../ /g' chosen.gp) || fail "the caption does not tell the choice"
 expect 0 "$clast" compare one.db one.db --where "threshold_strain < 0.03" --csv
 same "$(wc -l <out)" 3 "pairs of points"
 
