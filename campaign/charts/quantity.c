@@ -24,6 +24,7 @@ enum {
   HIGH = 12,
   WEAK = 13,
   RESOLUTION = 14,
+  VERDICT = 15,
   DOUBTFUL = 17,
   COLUMNS = 19
 };
@@ -364,7 +365,7 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
   struct ask_group_pooled pooled;
   char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", allowed[64], widest[64], where[400] = "";
   size_t count;
-  int64_t points = 0, kept = 0, not_studied = 0;
+  int64_t points = 0, kept = 0, not_studied = 0, open = 0;
   double largest = -1;
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_POOL, axes, &count, error));
   for (size_t i = 0; i < count; i++)
@@ -381,6 +382,8 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
     const double compared = !of_value ? total : total > 0 ? total / fabs(mean) : 0;
     points++;
     not_studied += isnan(resolution);
+    const enum ask_resolution_verdict verdict = ask_resolution_verdict(answer_text(&groups, count + VERDICT));
+    open += verdict == ASK_RESOLUTION_AT_LEAST || verdict == ASK_RESOLUTION_DIVERGES;
     kept += compared <= within;
     if (!(compared > largest))
       continue;
@@ -411,6 +414,10 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
               not_studied && not_studied < points ? "; points whose resolution was not studied count with seeds alone"
                                                   : "",
               kept < points ? ". A smaller accuracy.within takes more seeds or finer settings" : "");
+  if (open > 0)
+    words_print(stderr, "",
+                "clast: accuracy: no limit is seen at %" PRId64 " of them, so that their error may be larger than that",
+                open);
   return STATUS_OK;
 }
 

@@ -228,6 +228,13 @@ cp sharp.db missed.db
 sqlite3 missed.db "update run set largest_fraction = seed % 2"
 expect 0 "$clast" run sharp.yaml --store missed.db
 says "accuracy: 0 of 1 point is within 0.05 by"
+grep -q "clast: accuracy: no limit" err && fail "a limit was seen"
+# With a level without a limit as the error, that is said.
+sqlite3 sharp.db ".backup open.db"
+sed 's/0.05/0.9/' sharp.yaml >loose.yaml
+sqlite3 open.db "update convergence set open = 1"
+expect 0 "$clast" run loose.yaml --store open.db
+says "clast: accuracy: no limit is seen at 1 of them"
 same "$(number sharp.db "select value from campaign join campaign_point using (campaign_id) join point_input using (point_id) \
   where name = 'sharp' and path = 'fidelity.time_step'")" "$(cat setting)" "time step of the campaign's point"
 sed 's/{within: 0.05}/{quantity: beta_masses_from_2, within: 9}/' sharp.yaml >beta.yaml
@@ -602,4 +609,4 @@ expect 65 "$clast" converge bad.yaml --list
 says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 155
+done_after 156
