@@ -217,6 +217,10 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     series[count++].label = label;
   }
   write_caption(store, curves, caption);
+  if (measured && measured->n && !measured->single && !form.cumulative && measured->above[measured->n - 1] > 0)
+    text_append(caption, CAPTION, ". Measured: the class from %.3g %s on has no upper end and is drawn only in N(>%c)",
+                spectrum_size_of(&form.size, measured->mass[measured->n - 1]),
+                sizes ? "m" : ask_pool_mass_unit(form.size.dimensions), sizes ? 'L' : 'm');
   TRY(ask_points_scenes(store, scenes, sizeof scenes, error));
   snprintf(title, sizeof title, "Fragment %s of %s, pooled over runs", sizes ? "sizes" : "masses", scenes);
   char x[64], y[64];

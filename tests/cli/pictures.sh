@@ -82,6 +82,12 @@ blocks = open("sieves.dat").read().split("\n\n\n")
 sieve = [[float(x) for x in l.split()] for b in blocks[1:] for l in b.splitlines() if l and l[0] != "#"]
 assert len([r for r in sieve if r[1] > 0]) >= 3, blocks
 PY
+grep -q "has no upper end" sieves.gp && fail "a sieve table without a mass above its last sieve has an open class"
+sed 's/6;100/6;90/' sieves.csv >open.csv
+expect 0 "$clast" spectrum small.db --point 1 --with open.csv --picture open.svg --keep-script
+grep -q "class from 6 kg/m on has no upper end and is drawn only in N(>m)" open.gp || fail "an open class is left out without a word"
+expect 0 "$clast" spectrum small.db --point 1 --with open.csv --cumulative --picture open.svg --keep-script
+grep -q "has no upper end" open.gp && fail "N(>m) has the open class"
 ok "shares of mass from a sieve table, and their curve"
 expect 0 "$clast" spectrum small.db --point 1 --runs --cumulative --json
 python -c "
@@ -406,4 +412,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 147
+done_after 149
