@@ -410,7 +410,8 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
     uncertainty_doubts(&cells.doubts, stderr);
     words_print(
         stderr, "",
-        "clast: %zu points with %zu seeds each, which count alike. Share: of the variance of these points. An input: "
+        "clast: %zu points with %zu seeds each, which count alike. Share: of the variance of these points alone "
+        "(`clast sensitivity`: of all points drawn like them). An input: "
         "variance of its means over the other "
         "inputs%s what the inputs together have beyond their sum is their interaction. Low, high: 95 %% interval "
         "over seeds",
@@ -702,7 +703,7 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   words_print(
       stderr, "",
       "clast: share: the part of the variance that an input alone explains, with its 95 %% interval, from %zu "
-      "points%s. "
+      "points%s. It is an estimate for all points drawn like these (`clast scatter --split`: of these alone). "
       "What the shares leave is the effect of inputs together%s. rank: inputs with overlapping intervals share it. "
       "Four times the points halve the intervals",
       p.data.points,
