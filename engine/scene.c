@@ -611,6 +611,14 @@ static status change_material(struct scene *scene, const struct field *row, cons
   return field_is_choice(row, now) ? STATUS_OK : take_own(scene, row, now, error);
 }
 
+/* The row's own text of a choice; "": it is none. */
+static const char *built_in(const struct field *row, const char *text) {
+  const char *const *choice = row->choices;
+  while (*choice && strcmp(*choice, text) != 0)
+    choice++;
+  return *choice ? *choice : "";
+}
+
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   const struct field *row = field_find_in(table, path, scene->inputs, error);
@@ -624,7 +632,8 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   TRY(field_set(row, scene->inputs, &taken, error));
   scene->overridden[row - table->rows] = true;
   if (is_open(row) && strcmp(before.text, value->text) != 0) {
-    scene->replaced[row - table->rows] = true;
+    if (!scene->replaced[row - table->rows])
+      scene->replaced[row - table->rows] = built_in(row, before.text);
     TRY(change_material(scene, row, &before, value->text, error));
   }
   scene->given[row - table->rows] = true;
@@ -709,6 +718,8 @@ static const struct field *replaced_name(const struct scene *scene, const struct
     if (!scene->replaced[i])
       continue;
     field_get(name, scene->inputs, &value);
+    if (strcmp(scene->replaced[i], value.text) == 0)
+      continue; /* back to that of the document */
     const size_t section = (size_t)(strrchr(name->path, '.') + 1 - name->path);
     if (strncmp(row->path, name->path, section) == 0 && field_is_choice(name, value.text))
       return name;

@@ -26,11 +26,12 @@ struct scene_settings {
 
 struct scene {
   const struct engine_kind *kind;
-  void *inputs;                    /* kind->inputs->size bytes, SI, defaults filled */
-  bool *given;                     /* per input row: set by the document or an override */
-  bool *overridden;                /* per input row: set by an override */
-  bool *replaced;                  /* per input row: the name of a material, not the one of the document any more */
-  char name[FIELD_TEXT_SIZE];      /* built-in name, or the document's own `name:` */
+  void *inputs;               /* kind->inputs->size bytes, SI, defaults filled */
+  bool *given;                /* per input row: set by the document or an override */
+  bool *overridden;           /* per input row: set by an override */
+  const char **replaced;      /* per input row: the document's material, where an override changed its name (static;
+                                 "": no built-in one). NULL: unchanged */
+  char name[FIELD_TEXT_SIZE]; /* built-in name, or the document's own `name:` */
   struct scene_settings *settings; /* owned; NULL: none */
   size_t settings_count;
 };

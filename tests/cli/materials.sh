@@ -171,6 +171,8 @@ grep -q 'the scene gives' out && fail "a number that the campaign gives"
 for given in "target.material=basalt" "fragments.static_strength=2e6 Pa" "target.material.weibull.m=9"; do
   "$clast" explain basalt-sphere --set "$given" | grep -q 'the scene gives' && fail "a number of the scene's own rock: $given"
 done
+expect 0 "$clast" explain basalt-sphere --set target.material=granite --set target.material=basalt
+grep -q 'the scene gives' out && fail "the scene has its own rock again"
 # A scene's own value of a material that another one replaces.
 printf 'engine: sph\nname: own\ntarget: {radius: 3 cm, material: {name: basalt, weibull: {m: 9}}}\nimpact: {projectile: mass, mass: 0.2 g, speed: 3 km/s}\n' >own.yaml
 expect 0 "$clast" explain ./own.yaml --set target.material=granite
@@ -179,4 +181,4 @@ prints "target.material.weibull.m: the scene gives 9"
 # Pores: the first message names all that they need.
 expect 65 "$clast" explain basalt-sphere --set "target.material.porosity.fraction=20 %"
 says "remove it, or set target.material.porosity.curve: quadratic and give target.material.porosity.elastic_pressure (Pa), target.material.porosity.solid_pressure (Pa)"
-done_after 63
+done_after 64
