@@ -658,11 +658,11 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   else
     snprintf(caption, sizeof caption, "No interval: %s; %s",
              quantity->exponent ? "too few runs or fragments" : "one run a point", resolution);
-  bool weak = false;
+  size_t weak = 0;
   for (size_t i = 0; i < count; i++)
-    weak |= tile[i].weak;
-  if (weak)
-    text_append(caption, sizeof caption, "; ~: %s",
+    weak += tile[i].weak;
+  if (weak > 0)
+    text_append(caption, sizeof caption, "; ~, %zu of %zu: %s", weak, count,
                 quantity->exponent ? "no interval (clast explain weak)" : "weak, too few runs");
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);

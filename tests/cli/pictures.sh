@@ -136,7 +136,7 @@ for column, row, value, _, _, kind, weak in rows:
 assert kinds == [6, 2, 2], kinds
 weak = sum(w for _, w in means.values())
 assert 0 < weak == len(re.findall(r'>[-0-9.e]+~', open('three.svg').read())), (weak, means)
-assert '; ~: weak, too few runs' in open('three.gp').read()
+assert f'; ~, {weak} of 6: weak, too few runs' in open('three.gp').read()
 PY
 ok "each panel of a map has the means of its value"
 expect 64 "$clast" map three.db m.png -x strain -y angle --by angle
@@ -387,11 +387,13 @@ ok "exponents by their names"
 # A sample: no line joins points between which other inputs change, too; a grid has lines.
 tiny sampled
 sed -i 's/\[2 %, 5 %\]/{uniform: [2 %, 5 %]}/; s/\[2 deg, 6 deg\]/{uniform: [2 deg, 6 deg]}/' sampled.yaml
-printf 'design: {kind: latin_hypercube, points: 8}\n' >>sampled.yaml
+printf 'design: {kind: latin_hypercube, points: 32}\n' >>sampled.yaml
 expect 0 "$clast" run sampled.yaml -j 2 --quiet
 expect 0 "$clast" plot sampled.db sampled.png -x strain --keep-script
 says "no line joins the points"
-same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 8 "gaps between the points of a sample"
+same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 32 "gaps between the points of a sample"
+expect 0 "$clast" map sampled.db sampled.svg -x strain -y angle --keep-script # too many marks for numbers
+same "$(grep -o '>~' sampled.svg | wc -l)" "$(sed -n 's/.*; ~, \([0-9]*\) of 32: weak.*/\1/p' sampled.gp)" "weak marks"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
 # Two campaigns in one store: from point to point the body changes, too, and chart and table say so.
@@ -412,4 +414,4 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 149
+done_after 151

@@ -18,7 +18,7 @@ if (scattered > 0) {
   few = rows <= 30
   plot data using 1:2:(column(3)) with points pt 7 ps 2 palette notitle, \
        data using 1:(column(6) == 0 ? column(2) : NaN) with points lt 1 pt 6 ps 2 lc rgb 0x606060 notitle, \
-       data using 1:2:(column(6) > 0 ? '' : few ? number(column(3), column(4), column(5), column(7)) : column(4) > 0 ? '!' : '') with labels offset 0, 0.9 font letters.',9' tc rgb 0x404040 noenhanced notitle, \
+       data using 1:2:(column(6) > 0 ? '' : few ? number(column(3), column(4), column(5), column(7)) : (column(7) > 0 ? '~' : '') . (column(4) > 0 ? '!' : '')) with labels offset 0, 0.9 font letters.',9' tc rgb 0x404040 noenhanced notitle, \
        data using 1:(column(6) == 1 ? column(2) : NaN) with points lt 1 pt 2 ps 2 lc rgb 0x909090 notitle
 } else {
 set xrange [-0.5:columns - 0.5]
