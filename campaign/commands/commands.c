@@ -49,7 +49,7 @@ status commands_ask(const struct command_line *line,
   char numbers[ASK_CAMPAIGN_NUMBERS] = "";
   if (line->choice.campaign)
     TRY(ask_campaign_namesakes(store, line->choice.campaign, numbers, sizeof numbers, error));
-  uncertainty_namesakes(numbers, line->choice.campaign);
+  uncertainty_namesakes(numbers, line->choice.campaign, line->arguments[0]);
   uncertainty_excluded(excluded, line->arguments[0]);
   uncertainty_left_out(ask_choice_left_out(store));
   return STATUS_OK;

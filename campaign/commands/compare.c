@@ -115,7 +115,7 @@ static status run(const struct command_line *line, struct error *error) {
     int64_t left_out;
     const int64_t count = ask_pairs_excluded(pairs, side, &left_out, &path);
     const char *campaign, *numbers = ask_pairs_namesakes(pairs, side, &campaign);
-    uncertainty_namesakes(numbers, campaign);
+    uncertainty_namesakes(numbers, campaign, path);
     uncertainty_excluded(count, path);
     uncertainty_left_out(left_out);
   }

@@ -184,7 +184,7 @@ static status add_store(const struct report_choice *choice, const char *name, st
   char numbers[ASK_CAMPAIGN_NUMBERS] = "";
   if (runs.campaign)
     TRY(ask_campaign_namesakes(store, runs.campaign, numbers, sizeof numbers, error));
-  uncertainty_namesakes(numbers, runs.campaign);
+  uncertainty_namesakes(numbers, runs.campaign, path);
   uncertainty_excluded(excluded, path);
   uncertainty_left_out(ask_choice_left_out(store));
   status code = ask_page_make(store, &making.page, error);

@@ -106,8 +106,8 @@ void uncertainty_cell(double value, double half_width, const struct sample_range
 
 /* Says on stderr that so many runs of a store are excluded; nothing for 0. */
 void uncertainty_excluded(int64_t count, const char *store);
-/* Says on stderr that these campaigns (ask_campaign_namesakes()) are all called `campaign`; nothing for "". */
-void uncertainty_namesakes(const char *numbers, const char *campaign);
+/* Says on stderr that these campaigns of a store (ask_campaign_namesakes()) have one name; nothing for "". */
+void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path);
 /* Says on stderr that so many points of studies and searches are left out; nothing for 0. */
 void uncertainty_left_out(int64_t points);
 

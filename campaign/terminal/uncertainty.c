@@ -95,10 +95,10 @@ void uncertainty_excluded(int64_t count, const char *store) {
             count == 1 ? " is" : "s are", store, count == 1 ? "it" : "them");
 }
 
-void uncertainty_namesakes(const char *numbers, const char *campaign) {
+void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path) {
   if (*numbers)
-    fprintf(stderr, "clast: campaigns %s are called %s: --campaign %.*s takes one alone\n", numbers, campaign,
-            (int)strcspn(numbers, ","), numbers);
+    fprintf(stderr, "clast: campaigns %s of %s are called %s: `%s --campaign %.*s` takes one alone\n", numbers, path,
+            campaign, path, (int)strcspn(numbers, ","), numbers);
 }
 
 void uncertainty_left_out(int64_t points) {

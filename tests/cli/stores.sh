@@ -211,11 +211,11 @@ expect 0 "$clast" run twin.yaml -j 1 --quiet --store second_twin.db --set contac
 expect 0 "$clast" merge twins.db first.db second_twin.db
 says "\`clast stats twins.db --campaign 1\` takes one campaign alone; campaigns 1, 2 have one name"
 expect 0 "$clast" stats twins.db --campaign twin
-says "campaigns 1, 2 are called twin: --campaign 1 takes one alone"
+says "campaigns 1, 2 of twins.db are called twin: \`twins.db --campaign 1\` takes one alone"
 expect 0 "$clast" report twins.db:twin -o twins.html
-says "campaigns 1, 2 are called twin"
+says "campaigns 1, 2 of twins.db are called twin"
 expect 0 "$clast" compare twins.db:twin twins.db:twin
-says "campaigns 1, 2 are called twin"
+says "campaigns 1, 2 of twins.db are called twin"
 expect 64 "$clast" compare twins.db:twin first.db
 says "Campaigns 1, 2 of twins.db are called twin: give that store alone with --campaign 1, the other as STORE:CAMPAIGN"
 expect 0 "$clast" compare twins.db first.db:twin --campaign 1
