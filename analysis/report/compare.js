@@ -4,12 +4,10 @@ import {cells, doubtSentence} from './plane.js';
 import {inputsOf} from './spectrum.js';
 import * as questions from './questions.js';
 import {isNamed, state} from './state.js';
-import {ask, has} from './stores.js';
+import {ask, has, matchesOf} from './stores.js';
 import {label, marked, number, onlyOf, operandOf, withError, withInterval} from './words.js';
 
 const SHOWN = 500;
-
-const keyOf = (from, point) => JSON.stringify(from.axes.map((axis) => [axis.column_name, point[axis.column_name]]).sort());
 
 // The differences that clast computed, by the points of both stores.
 function differencesOf(first, other) {
@@ -24,11 +22,12 @@ export function showCompare() {
   if (section.hidden) return;
   const [first, ...others] = state.stores;
   const differences = others.map((other) => differencesOf(first, other));
-  const known = others.map((other) => new Map(cells(other, state.quantity).map((cell) => [keyOf(other, cell), cell])));
-  // Points with the same inputs; of two single points (STORE:POINT) those that clast compared.
-  const partner = (cell, i) => known[i].get(keyOf(first, cell)) ?? [...known[i].values()].find((other) => differences[i].has(`${cell.point_id} ${other.point_id}`));
+  const known = others.map((other) => new Map(cells(other, state.quantity).flatMap((cell) => matchesOf(other, cell).map((place) => [place, cell]))));
+  const partner = (cell, i) => matchesOf(first, cell).map((place) => known[i].get(place)).find(Boolean);
   const rows = cells(first, state.quantity).map((cell) => [cell, ...others.map((_, i) => partner(cell, i))]).filter((row) => row.slice(1).some(Boolean));
-  const inputs = (row) => [...new Set(row.map((cell, i) => (cell ? inputsOf(state.stores[i], cell, isNamed(state.stores[i]) ? undefined : state.stores[i].axes) : '')))].filter(Boolean).join('; ') || 'the only point';
+  const named = state.stores.some(isNamed);
+  const inputs = (row) => [...new Set(row.flatMap((cell, i) => (!cell ? [] : named ? [inputsOf(state.stores[i], cell, isNamed(state.stores[i]) ? undefined : state.stores[i].axes)]
+    : state.stores[i].axes.map((axis) => inputsOf(state.stores[i], cell, [axis])))))].filter(Boolean).join(named ? '; ' : ', ') || 'the only point';
   const shown = (cell) => (cell ? `${marked(withInterval(cell), cell.doubt, cell.n)}, n=${cell.n ?? 0}` : '-');
   const {campaign, ...rest} = first.facts, chosen = {facts: first.name === first.facts.file ? first.facts : rest}; // STORE:CAMPAIGN names its own
   const both = (a, b) => (a.doubt || b?.doubt ? {withheld: 0} : null);
@@ -41,10 +40,10 @@ export function showCompare() {
   const none = others.filter((other) => other.facts.no_pair).map((other) => ` ${other.name}: ${other.facts.no_pair}.`);
   fill(body('compare'),
     ...apart.filter(Boolean).map((text) => element('p', {}, text)),
-    rows.length ? table(`${title} of ${rows.every((row) => inputs(row) === inputs([row[0]])) ? 'the points with the same varied inputs' : others.length > 1 ? 'the named points' : 'two points'}; ± is the 95 % interval over seeds`,
+    rows.length ? table(`${title} of ${!named || rows.every((row) => inputs(row) === inputs([row[0]])) ? 'the common points' : others.length > 1 ? 'the named points' : 'two points'}; ± is the 95 % interval over seeds`,
       ['inputs', first.name, ...others.flatMap((other) => [other.name, `${other.name} minus ${first.name}`])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputs([cell, ...rest]), shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
-      : element('p', {}, `These stores have no point in common.${none.join('')}`),
+      : element('p', {}, `These stores have no point in common${state.stores.some((one) => one.whole) ? ' by what both vary' : ''}.${none.join('')}`),
     ...[...new Set(state.stores.map((one, i) => doubtSentence(one, rows.map((row) => row[i]).filter(Boolean))))].map((text) => element('p', {}, text)),
     rows.length ? element('p', {}, 'Where at least half of the runs have one seed on both sides, the difference is of these pairs. The same from a shell:') : null,
     ...(state.quantity === 'beta' ? [] : others.filter((other) => !other.facts.no_pair).map((other) => element('p', {}, command(`clast compare ${operandOf(first)} ${operandOf(other)}${onlyOf(chosen)} --quantity ${state.quantity}`)))));

@@ -83,6 +83,7 @@ export const run = 'SELECT * FROM runs WHERE run_id = :run';
 export const pictures = 'SELECT run_id, quantile, png FROM picture WHERE point_id = :point ORDER BY quantile NULLS LAST, run_id';
 export const pictureOfRun = 'SELECT run_id, quantile, png FROM picture WHERE run_id = :run';
 export const differences = 'SELECT first_point, point_id, pairs, difference, hw95 FROM difference WHERE quantity = :quantity';
+export const pairs = 'SELECT DISTINCT first_point, point_id FROM difference';
 export const keptRuns = 'SELECT count(*) AS n FROM runs';
 
 // For readers: what the box for SQL begins with, and the first run of a point.

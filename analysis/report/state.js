@@ -3,7 +3,7 @@
 import {COLOURS} from './chart.js';
 import {cells, effect} from './plane.js';
 import {widestSpectrum} from './questions.js';
-import {ask} from './stores.js';
+import {ask, matchesOf} from './stores.js';
 
 export const state = {stores: [], active: 0, quantity: null, x: null, y: null, at: {}, chosen: new Set(), sql: null}; // at: values of other inputs by column
 
@@ -15,7 +15,7 @@ export const isNamed = ({facts, name, points}) => facts.file && facts.file !== n
 
 // Points of other stores that are drawn beside this one: at the same place, or named. Masses have one unit in a chart.
 function beside(point) {
-  const same = (other, candidate) => other.axes.length === store().axes.length && other.axes.every((axis) => candidate[axis.column_name] === point[axis.column_name]);
+  const places = matchesOf(store(), point), same = (other, candidate) => matchesOf(other, candidate).some((place) => places.includes(place));
   return state.stores.filter((other) => other !== store() && other.facts.mass_unit === store().facts.mass_unit)
     .flatMap((other) => other.points.filter((candidate) => isNamed(other) || same(other, candidate)).slice(0, 1).map((candidate) => ({from: other, point: candidate})));
 }

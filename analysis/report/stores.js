@@ -96,6 +96,10 @@ export function tellInputs(stores) {
     store.inputs = [...store.axes, ...store.fixed.filter(differs)].sort((a, b) => (a.path < b.path ? -1 : 1));
 }
 
+// What common points of stores share: the point of the first store with which clast compared them, also where only one
+// store varies an input; and the inputs that each varies, as stores that are dropped on the page have no more.
+export const matchesOf = (from, point) => [point.place, JSON.stringify(from.axes.map(({column_name: column}) => [column, point[column]]).sort())].filter((place) => place !== undefined);
+
 export async function openEmbedded() {
   SQL = await initSqlJs({wasmBinary: await unpack(document.getElementById('wasm').textContent), useOldExtensionFunctions: false});
   const stores = [];
@@ -104,6 +108,8 @@ export async function openEmbedded() {
     element.remove();
     const store = describe({db, whole: false});
     store.name = store.facts.store;
+    const first = new Map(has(store, 'difference') ? ask(store, questions.pairs).map((row) => [row.point_id, row.first_point]) : []);
+    for (const point of store.points) point.place = stores.length ? first.get(point.point_id) : point.point_id;
     stores.push(store);
   }
   return stores;

@@ -455,7 +455,7 @@ struct ask_pairs; /* opaque */
 
 struct ask_pairs_row {
   int64_t point[2];     /* number of each point in its store */
-  const char *inputs;   /* varied inputs that both have; "" when two points were named */
+  const char *inputs;   /* inputs that a side varies; "" when two points were named */
   const char *label[2]; /* varied inputs of each for people: "strain 3 %, angle 4 deg" */
   struct difference difference;
   const struct ask_doubts *doubts[2];

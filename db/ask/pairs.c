@@ -10,7 +10,7 @@
 #include "schemas/memory.h"
 
 struct group {  /* the runs of one point */
-  char *list;   /* "path = value" of each varied input, with SEPARATOR between them: a value may have a comma */
+  char *list;   /* "path = value" of each input that a side varies, with SEPARATOR: a value may have a comma */
   char *inputs; /* the same for readers, with ", " */
   char label[ASK_POOL_LABEL];
   int64_t point;
@@ -27,6 +27,7 @@ struct side {
   char path[LIMITS_PATH];               /* of the store */
   int64_t excluded;                     /* runs that a person excluded */
   int64_t left_out;                     /* ask_choice_left_out() */
+  char *axes;                           /* JSON: paths of what it varies */
   struct ask_choice choice;             /* its texts are borrowed from the operands */
   char namesakes[ASK_CAMPAIGN_NUMBERS]; /* of the chosen campaign */
   bool one_point;
@@ -41,16 +42,18 @@ struct ask_pairs {
   size_t at, found; /* the next group of side 0; pairs so far */
 };
 
-/* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. */
-static struct answer ask_values(struct store *store, const char *column, struct error *error) {
+/* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. An
+ * input that only the other side varies tells by its value which points are common. */
+static struct answer ask_values(struct store *store, const struct side side[2], const char *column,
+                                struct error *error) {
   return answer_to(
       store, error,
       "WITH varied AS MATERIALIZED (SELECT point_id, (SELECT group_concat(v, char(10)) FROM (SELECT path || ' = ' || "
-      "CAST(value AS TEXT) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY "
-      "path)) AS inputs FROM point p)\nSELECT inputs, point_id, seed, \"%w\" FROM runs "
-      "JOIN varied USING (point_id) WHERE counts = 1 AND results_version = (SELECT max(results_version) FROM run WHERE "
-      "counts = 1) ORDER BY inputs, point_id, seed, replicate",
-      column);
+      "CAST(value AS TEXT) AS v FROM point_input i WHERE i.point_id = p.point_id AND path IN (SELECT value FROM "
+      "json_each(%Q) UNION SELECT value FROM json_each(%Q)) ORDER BY path)) AS inputs FROM point p)\nSELECT inputs, "
+      "point_id, seed, \"%w\" FROM runs JOIN varied USING (point_id) WHERE counts = 1 AND results_version = (SELECT "
+      "max(results_version) FROM run WHERE counts = 1) ORDER BY inputs, point_id, seed, replicate",
+      side[0].axes, side[1].axes, column);
 }
 
 /* The list with ", " for each SEPARATOR, which the caller frees; NULL: no memory. */
@@ -119,7 +122,10 @@ static status read_exponents(struct store *store, enum exponent_method method, e
   return STATUS_OK;
 }
 
-static status read_values(struct store *store, const char *quantity, struct side *side, struct error *error) {
+/* The values of side k. */
+static status read_values(struct store *store, struct ask_pairs *pairs, int k, struct error *error) {
+  const char *quantity = pairs->quantity;
+  struct side *side = &pairs->side[k];
   char column[ASK_GROUP_NAME];
   bool exponent;
   enum exponent_method method;
@@ -129,7 +135,7 @@ static status read_values(struct store *store, const char *quantity, struct side
     snprintf(column, sizeof column, "seed"); /* every run has one */
   else
     TRY(ask_group_quantity(store, quantity, column, error));
-  ANSWER answer = ask_values(store, column, error);
+  ANSWER answer = ask_values(store, pairs->side, column, error);
   while (answer_next(&answer))
     if (!isnan(answer_real(&answer, 3)))
       TRY(add_run(side, &answer, error));
@@ -145,22 +151,20 @@ static status read_values(struct store *store, const char *quantity, struct side
   return exponent ? read_exponents(store, method, window, side, error) : STATUS_OK;
 }
 
-static status read_side(struct ask_pairs *pairs, const char *operand, struct ask_choice choice, struct side *side,
+static status open_side(const char *operand, struct ask_choice choice, struct side *side, struct store **store,
                         struct error *error) {
   ask_choose_operand(operand, side->path, sizeof side->path, &choice);
   side->one_point = choice.point > 0;
   side->choice = choice;
-  STORE store = NULL;
-  TRY(store_open_reader(side->path, &store, error));
-  TRY(ask_choose(store, &choice, error));
+  TRY(store_open_reader(side->path, store, error));
+  TRY(ask_choose(*store, &choice, error));
   if (choice.campaign)
-    TRY(ask_campaign_namesakes(store, choice.campaign, side->namesakes, sizeof side->namesakes, error));
-  TRY(ask_quantity_main(store, pairs->main, &pairs->quantity, error));
-  TRY(read_values(store, pairs->quantity, side, error));
-  if (side->group_count > 0)
-    return STATUS_OK;
-  return status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld", operand,
-                     pairs->quantity);
+    TRY(ask_campaign_namesakes(*store, choice.campaign, side->namesakes, sizeof side->namesakes, error));
+  ANSWER axes = answer_to(*store, error, "SELECT json_group_array(path) FROM axis");
+  if (answer_next(&axes))
+    side->axes = strdup(answer_text(&axes, 0));
+  TRY(answer_end(&axes));
+  return side->axes ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
 
 const char *ask_pairs_quantity(const struct ask_pairs *pairs) {
@@ -172,8 +176,17 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
   ASK_PAIRS pairs = memory_small(1, sizeof *pairs);
   *out = NULL;
   pairs->quantity = quantity;
-  TRY(read_side(pairs, first, *choice, &pairs->side[0], error));
-  TRY(read_side(pairs, second, *choice, &pairs->side[1], error));
+  STORE a = NULL;
+  STORE b = NULL;
+  TRY(open_side(first, *choice, &pairs->side[0], &a, error));
+  TRY(open_side(second, *choice, &pairs->side[1], &b, error));
+  TRY(ask_quantity_main(a, pairs->main, &pairs->quantity, error));
+  for (int k = 0; k < 2; k++) {
+    TRY(read_values(k ? b : a, pairs, k, error));
+    if (pairs->side[k].group_count == 0)
+      return status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld",
+                         k ? second : first, pairs->quantity);
+  }
   if (pairs->side[0].one_point != pairs->side[1].one_point)
     return status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
   qsort(pairs->side[0].groups, pairs->side[0].group_count, sizeof *pairs->side[0].groups, by_point);
@@ -188,6 +201,7 @@ void ask_pairs_free(struct ask_pairs *pairs) {
       free(pairs->side[k].groups[i].list);
       free(pairs->side[k].groups[i].inputs);
     }
+    free(pairs->side[k].axes);
     free(pairs->side[k].groups);
     free(pairs->side[k].values);
   }
@@ -348,7 +362,7 @@ static bool is_common(const struct ask_pairs *pairs, const char *path, size_t pa
   return false;
 }
 
-static bool varies(const struct side *side, const char *path, size_t path_length) {
+static bool has_path(const struct side *side, const char *path, size_t path_length) {
   size_t length = 0;
   for (const char *input = NULL; (input = next_input(side->groups[0].list, input, &length));)
     if (strncmp(input, path, path_length) == 0 && input[path_length] == ' ')
@@ -356,15 +370,15 @@ static bool varies(const struct side *side, const char *path, size_t path_length
   return false;
 }
 
-/* Writes the paths of the inputs that one side alone varies, or of which the sides have no common value, of many the
- * first NAMED; "": each has one. */
+/* Writes the paths of the inputs that the scene of one side alone has, or of which the sides have no common value, of
+ * many the first NAMED; "": each has one. */
 static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) {
   size_t length = 0, count = 0;
   *text = '\0';
   for (int k = 1; k >= 0; k--)
     for (const char *input = NULL; (input = next_input(pairs->side[k].groups[0].list, input, &length));) {
       const size_t path = strcspn(input, " ");
-      const bool both = varies(&pairs->side[!k], input, path);
+      const bool both = has_path(&pairs->side[!k], input, path);
       if ((both && (k == 0 || is_common(pairs, input, path))) || count++ >= NAMED)
         continue;
       text_append(text, size, "%s", *text ? ", " : ": ");
@@ -372,7 +386,7 @@ static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) 
       if (both)
         text_append(text, size, "no common value of %.*s", (int)path, input);
       else
-        text_append(text, size, "only %.64s varies %.*s", store, (int)path, input);
+        text_append(text, size, "only %.64s has %.*s", store, (int)path, input);
     }
   if (count > NAMED)
     text_append(text, size, " and %zu more inputs", count - NAMED);
@@ -384,7 +398,7 @@ status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
   if (pairs->found > 0)
     return STATUS_OK;
   write_apart(pairs, apart, sizeof apart);
-  char advice[256] = "Name campaigns that vary the same (STORE:CAMPAIGN)";
+  char advice[512] = "Name campaigns that vary the same (STORE:CAMPAIGN)";
   for (int k = 1; k >= 0; k--)
     if (*pairs->side[k].namesakes)
       snprintf(advice, sizeof advice,
@@ -392,6 +406,11 @@ status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
                "STORE:CAMPAIGN",
                pairs->side[k].namesakes, pairs->side[k].path, pairs->side[k].choice.campaign,
                (int)strcspn(pairs->side[k].namesakes, ","), pairs->side[k].namesakes);
+  if (*a->namesakes && *b->namesakes)
+    snprintf(advice, sizeof advice,
+             "Campaigns %s of %.64s share a name, and so do %s of %.64s: --campaign NUMBER with the stores alone takes "
+             "this one of both",
+             a->namesakes, a->path, b->namesakes, b->path);
   return status_fail(error, STATUS_USAGE,
                      "no two points have the same varied inputs%s. %s, or two points: `clast compare %s:%lld %s:%lld`",
                      apart, advice, a->path, (long long)a->groups[0].point, b->path, (long long)b->groups[0].point);

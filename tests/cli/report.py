@@ -485,6 +485,14 @@ def side_by_side(browser):
     wait_shown(browser, 1)
     told = text(browser, "#compare .body")
     assert "marked.db: no two points have the same varied inputs" in told and "The same from a shell" not in told, told
+    for quantity in ("largest_fraction", "energy_input"):  # the second is no main result
+        browser.open("held.html", f"#quantity={quantity}&points=1")
+        wait_shown(browser, 1)
+        told = text(browser, "#compare .body")
+        assert browser.js("document.querySelectorAll('#compare tbody tr').length") == 2 and "of the common points;" in told and f"--quantity {quantity}" in told, told
+        assert "strain 2 %, angle 6 deg" in told and "strain 5 %, angle 6 deg" in told, told
+        names = browser.js("[...document.querySelectorAll('#seeds thead th')].map((h) => h.textContent.split(':')[0])")
+        assert names == ["", "held.db", "small.db"], names
     done("stores side by side tell inputs that differ, and grains of each")
 
 

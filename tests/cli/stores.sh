@@ -121,6 +121,30 @@ says "no common value of target.material.name. Name"
 expect 0 "$clast" compare long-dry.db long-wet.db
 says "own - $long-wet.yaml), impact.angle (10 deg, 20 deg), projectile.material.name (own - $long-dry.yaml, own - $long-wet.yaml)"
 
+# An input that one store fixes and the other one varies is matched by its value; one that is not in the other scene is
+# not.
+tiny fixed
+sed -i 's/1 ms/0.05 ms, threshold.angle: 4 deg/; /^  threshold.angle/d' fixed.yaml
+tiny grid
+sed -i 's/1 ms/0.05 ms/; s/2 deg, 6 deg/2 deg, 4 deg/' grid.yaml
+tiny impact
+sed -i 's/disc-explosion/disc-collision/; s/^set: .*/set: {body.diameter: 8 cm, stop.end_time: 0.05 ms}/; s/threshold.angle: .*/collision.speed: [40 m\/s]/' impact.yaml
+for name in fixed grid impact; do
+  expect 0 "$clast" run $name.yaml --quiet
+done
+expect 0 "$clast" compare fixed.db grid.db --csv
+same "$(tail -n +2 out | cut -d , -f 1,2 | tr '\n' ' ')" "1,2 2,4 " "common points"
+expect 0 "$clast" compare grid.db fixed.db --csv
+same "$(tail -n +2 out | wc -l)" 2 "common points of the stores the other way round"
+expect 64 "$clast" compare fixed.db impact.db
+says "only impact.db has collision.speed"
+sed 's/^vary: .*/vary: {impact.angle: [10 deg, 20 deg]}/; s/^name: .*/name: one-rock/; s|set: {|set: {target.material: basalt, |' own-rocks.yaml >one-rock.yaml
+expect 0 "$clast" run one-rock.yaml --quiet
+expect 0 "$clast" run own-rocks.yaml --quiet --store rocks-20.db --set impact.angle=20deg
+expect 0 "$clast" compare one-rock.db rocks-20.db --csv
+prints '"impact.angle = 0.349065850398866, target.material.name = basalt"'
+same "$(tail -n +2 out | cut -d , -f 1,2)" "2,2" "the common point of a material and an angle"
+
 # A store that only a study wrote shows results, and the inputs for which there is room.
 expect 0 "$clast" converge charged.yaml --knob time_step,integrator,stop --knob grains=1.2cm,1.069cm "${study[@]}" -q --store studied.db
 for of in estimates scatter spectrum exponents; do
@@ -216,7 +240,15 @@ expect 0 "$clast" report twins.db:twin -o twins.html
 says "campaigns 1, 2 of twins.db are called twin"
 expect 0 "$clast" compare twins.db:twin twins.db:twin
 says "campaigns 1, 2 of twins.db are called twin"
-expect 64 "$clast" compare twins.db:twin first.db
+expect 0 "$clast" compare twins.db:twin first.db # of twins.db the points with the friction of first.db
+expect 0 "$clast" run twin.yaml -j 1 --quiet --store third.db --set contact.friction=0.4
+expect 0 "$clast" run twin.yaml -j 1 --quiet --store fourth.db --set contact.friction=0.5
+expect 0 "$clast" merge others.db third.db fourth.db
+expect 0 "$clast" compare twins.db:twin first.db:twin
+says "campaigns 1, 2 of twins.db are called twin"
+expect 64 "$clast" compare twins.db:twin others.db:twin
+says "Campaigns 1, 2 of twins.db share a name, and so do 1, 2 of others.db: --campaign NUMBER with the stores alone"
+expect 64 "$clast" compare twins.db:twin third.db
 says "Campaigns 1, 2 of twins.db are called twin: give that store alone with --campaign 1, the other as STORE:CAMPAIGN"
 expect 0 "$clast" compare twins.db first.db:twin --campaign 1
 expect 0 "$clast" stats twins.db --campaign 1
@@ -334,4 +366,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 123
+done_after 141
