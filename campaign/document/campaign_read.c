@@ -309,18 +309,20 @@ static void check_quantities(document_node *root, bool stored, struct campaign *
         campaign->until_quantity, campaign->until_half_width, campaign->until_half_width, campaign->until_half_width);
 }
 
-/* Reports what a scene refuses at the entry of `set` that its message names. False: there is none. */
-static bool report_set(document_node *set, const struct campaign *campaign, const struct error *error) {
-  for (size_t i = 0; set && i < document_count(set); i++) {
+/* Reports what a scene refuses at the entry of `set` or `vary` that its message names. False: there is none. */
+static bool report_entry(document_node *root, const char *section, const struct campaign *campaign,
+                         const struct error *error) {
+  document_node *entries = document_key(root, section);
+  for (size_t i = 0; entries && i < document_count(entries); i++) {
     const char *key = NULL;
     char path[320];
-    document_node *node = document_item(set, i, &key);
+    document_node *node = document_item(entries, i, &key);
     const struct field *row = key ? field_find_in(campaign->scene->kind->inputs, key, campaign->scene->inputs, NULL)
                                   : NULL;
     const size_t length = row ? strlen(row->path) : 0;
     if (!row || strncmp(error->message, row->path, length) != 0 || strncmp(error->message + length, ": ", 2) != 0)
       continue;
-    snprintf(path, sizeof path, "set.%.300s", key);
+    snprintf(path, sizeof path, "%s.%.300s", section, key);
     document_report(node, path, "%s", error->message + length + 2);
     return true;
   }
@@ -365,7 +367,7 @@ static void check_points(document_node *root, struct campaign *campaign) {
     else if (campaign->point_lines)
       document_report(design, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
                       error.message);
-    else if (!report_set(document_key(root, "set"), campaign, &error))
+    else if (!report_entry(root, "set", campaign, &error) && !report_entry(root, "vary", campaign, &error))
       document_report_error(vary ? vary : root, vary ? "vary" : "scene", &error);
   }
 }
@@ -420,5 +422,5 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
     check_points(root, campaign);
   else if (good && set && scene_check(campaign->scene, &error) != STATUS_OK && /* not only the errors of `vary` */
            (varied || !names_varied(vary, error.message)))
-    (void)report_set(set, campaign, &error);
+    (void)report_entry(root, "set", campaign, &error);
 }

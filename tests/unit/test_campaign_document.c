@@ -295,6 +295,8 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "set: {contact.friction: [1, 2]}\n", "several values belong in `vary`");
   bad(HEAD "set: {contact.friction: 5 m}\n", "t.yaml:3:|set.contact.friction");
   bad(HEAD "set: {impact.speed: 5 m/s}\n", "impact.speed"); /* has no effect in an explosion */
+  bad(HEAD "vary:\n  threshold.strain: [1 %, 2 %]\n  impact.speed: [5 m/s, 6 m/s]\n",
+      "t.yaml:5:17: error: vary.impact.speed: has no effect");
   bad(HEAD "seeds: {per_point: 0}\n", "t.yaml:3:|seeds.per_point");
   bad(HEAD "seeds: {per_point: 3.5}\n", "t.yaml:3:|seeds.per_point");
   bad(HEAD "seeds: {per_point: 3, until: {half_width: 0.1}}\n", "exclude each other");
