@@ -81,6 +81,14 @@ static double number_behind(const char *text, const char *words) {
   return strtod(plain, NULL);
 }
 
+static void one_particle_is_no_plural(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.projectile_spacing=5");
+  char *text = sph_engine.describe(&inputs, true);
+  assert_non_null(strstr(text, "about 1 particle, "));
+  free(text);
+}
+
 /* The flaw strengths that explain prints are the real ones: (kV)^(-1/m), V the solid volume. */
 static void flaws_are_described(void **state) {
   (void)state;
@@ -327,6 +335,7 @@ int main(void) {
       cmocka_unit_test(results_table_is_whole),
       cmocka_unit_test(the_peak_does_not_hang_on_the_end_time),
       cmocka_unit_test(builtin_scenes_say_what_they_model),
+      cmocka_unit_test(one_particle_is_no_plural),
       cmocka_unit_test(flaws_are_described),
       cmocka_unit_test(cost_follows_the_options),
       cmocka_unit_test(steps_are_as_estimated),

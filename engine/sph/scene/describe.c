@@ -128,8 +128,9 @@ static void shape(const char *name, const struct sph_shape *s, const struct sph_
     mesh(s, out);
   else
     fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
-  fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", b->material_name,
-          sph_derived_density(b) * volume, volume / (spacing * spacing * spacing), spacing,
+  const double particles = round(volume / (spacing * spacing * spacing));
+  fprintf(out, " of %s, %.4g kg; about %.0f particle%s, spacing %.3g m, %s\n", b->material_name,
+          sph_derived_density(b) * volume, particles, particles == 1 ? "" : "s", spacing,
           lattices[graded ? SPH_LATTICE_IRREGULAR : b->lattice]);
 }
 
