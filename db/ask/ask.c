@@ -349,14 +349,19 @@ struct query_value ask_columns_value(const struct ask_column *column, const stru
   return shown;
 }
 
-/* Rows of results are for all engines; of one in the plane, masses are per metre of thickness. */
+/* Rows of results are for all engines; of one in the plane, masses are per metre of thickness. With runs of both kinds
+ * the column has no unit. */
 static status per_metre(struct store *store, char *unit, size_t size, struct error *error) {
-  int dimensions;
+  bool plane = false, other = false;
   if (strcmp(unit, "kg") != 0)
     return STATUS_OK;
-  TRY(ask_pool_dimensions(store, &dimensions, error));
-  snprintf(unit, size, "%s", ask_pool_mass_unit(dimensions));
-  return STATUS_OK;
+  ANSWER answer = answer_to(store, error, "SELECT DISTINCT engine FROM point");
+  while (answer_next(&answer)) {
+    const struct engine_kind *kind = engine_find(answer_text(&answer, 0), NULL);
+    *(kind && kind->dimensions == 2 ? &plane : &other) = true;
+  }
+  snprintf(unit, size, "%s", plane && other ? "" : ask_pool_mass_unit(plane ? 2 : 3));
+  return answer_end(&answer);
 }
 
 /* Units by column, of the one or of all. The views say the unit of a result that several engines have; a column with

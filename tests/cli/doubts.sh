@@ -201,6 +201,9 @@ says "3 runs of this store are in doubt: see columns doubtful and warnings of th
 printf 'name: liquid\nscene: disruption\nset: {fidelity.particles: 300, fidelity.projectile_spacing: 0.5, stop.end_time: 9 us}\nvary: {target.strength: [true, false]}\nseeds: {per_point: 2}\nstore: liquid.db\n' >liquid.yaml
 expect 0 "$clast" run liquid.yaml -j 2 --quiet
 same "$(number liquid.db "select (select count(*) from run where largest_fraction >= 0) || ' ' || (select count(largest_fraction) from runs) || ' ' || count(largest_fraction_mean) || ' ' || count(largest_fraction_sd) || ' ' || count(mean_fragment_mass_mean) from points")" "4 2 1 1 2" "a main result that is withheld"
+expect 0 "$clast" merge kinds.db withheld.db liquid.db # masses per metre beside others
+expect 0 "$clast" query kinds.db "select engine, total_mass from runs"
+grep -q 'total_mass *$' out || fail "one unit for masses of two kinds"
 expect 64 "$clast" compare withheld.db:1 withheld.db:2 -Q strength
 says "no run that counts has a value of strength that is not withheld"
 ok "withheld values"
@@ -286,4 +289,4 @@ for function in $named; do
   expect 64 "$clast" query marked.db "select $function)"
   says "wrong number of arguments to function $function)"
 done
-done_after 127
+done_after 129
