@@ -444,7 +444,9 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
 
   code = look(campaign, store, plan, &looking, error);
   const struct scene *scene = looking.costliest;
-  const bool trial = !options->no_trial && (!scene || !engine_ready(scene->kind, scene->inputs, &ignored));
+  const bool complete = looking.timed > 0 && looking.there == looking.asked &&
+                        (campaign->per_point > 0 || looking.ended == plan->points); /* nothing is left to predict */
+  const bool trial = !options->no_trial && !complete && (!scene || !engine_ready(scene->kind, scene->inputs, &ignored));
   if (code == STATUS_OK && trial)
     code = try_run(campaign, &looking, options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK && !trial && looking.timed == 0 && store &&
@@ -560,10 +562,12 @@ static void print(const struct campaign *campaign, const struct plan *plan, int 
             bytes(plan->memory_most * slots, b, sizeof b));
   else
     fputs("memory    not known: the scene sets no limits: memory for its program\n", out);
-  fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), plan->store);
-  if (campaign->keep != CAMPAIGN_KEEP_NONE)
-    fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
-  fputc('\n', out);
+  if (plan->runs_there < plan->runs_most) {
+    fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), plan->store);
+    if (campaign->keep != CAMPAIGN_KEEP_NONE)
+      fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
+    fputc('\n', out);
+  }
   if (plan->points_looked_at < plan->points)
     fprintf(out, "          (averages over %llu of the points)\n", (unsigned long long)plan->points_looked_at);
 
