@@ -92,8 +92,14 @@ export function showAsked(stores) {
 
 const NAMED = 3; // campaigns in the title
 
+// Names of the campaigns whose points are on the page: without studies and searches, where their points are left out.
+function named(store) {
+  const all = ask(store, questions.campaigns), own = all.filter((c) => !c.document?.startsWith('# Written by clast '));
+  return (own.length && !store.facts.studies ? own : all).map((c) => c.name);
+}
+
 export function showTitle(stores) {
-  const names = [...new Set(stores.flatMap((store) => ask(store, questions.campaigns).map((c) => c.name)))];
+  const names = [...new Set(stores.flatMap(named))];
   const title = names.length ? names.slice(0, NAMED).join(', ') + (names.length > NAMED ? ` and ${names.length - NAMED} more` : '') : stores.map((store) => store.name).join(', ');
   document.title = `${title} - clast`;
   document.getElementById('title').textContent = title;
