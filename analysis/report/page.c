@@ -1,11 +1,12 @@
 /* Writes data into the empty page. */
 #include "analysis/report/page.h"
 
+#include <inttypes.h>
 #include <limits.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -15,6 +16,8 @@
 
 /* Mark that the data replaces. */
 static const char mark[] = "<!-- data -->";
+/* The number `of` follows it. */
+static const char of_mark[] = "data-of=\"";
 
 status page_empty(unsigned char **html, size_t *size, struct error *error) {
   static const char *const places[] = {"share/clast/report.html", "../share/clast/report.html"};
@@ -69,7 +72,7 @@ static void write_base64(const unsigned char *bytes, size_t size, FILE *out) {
   }
 }
 
-status page_write(const char *path, const unsigned char *html, size_t html_size, size_t count,
+status page_write(const char *path, const unsigned char *html, size_t html_size, uint64_t of, size_t count,
                   const struct page_data *data, size_t *written, struct error *error) {
   OWNED char *text = NULL;
   const unsigned char *place = memmem(html, html_size, mark, sizeof mark - 1);
@@ -82,7 +85,7 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
     OWNED unsigned char *packed = NULL;
     size_t size = 0;
     code = compress_data(&data[i], &packed, &size, error);
-    fputs("<script type=\"application/octet-stream\" class=\"store\">", out);
+    fprintf(out, "<script type=\"application/octet-stream\" %s%016" PRIx64 "\" class=\"store\">", of_mark, of);
     write_base64(packed, code ? 0 : size, out);
     fputs("</script>\n", out);
   }
@@ -92,4 +95,19 @@ status page_write(const char *path, const unsigned char *html, size_t html_size,
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   TRY(code);
   return file_write(path, "page", text, *written, error);
+}
+
+bool page_is_of_other(const char *path, uint64_t of) {
+  OWNED unsigned char *html = NULL;
+  size_t size = 0;
+  struct error unread;
+  char number[17] = "";
+  struct stat there;
+  if (stat(path, &there) != 0 || !S_ISREG(there.st_mode) || file_read(path, "page", &html, &size, &unread))
+    return false;
+  const unsigned char *at = memmem(html, size, of_mark, sizeof of_mark - 1);
+  if (!at || (size_t)(html + size - at) < sizeof of_mark - 1 + sizeof number)
+    return false;
+  memcpy(number, at + sizeof of_mark - 1, sizeof number - 1);
+  return strtoull(number, NULL, 16) != of;
 }

@@ -194,6 +194,22 @@ static status add_store(const struct report_choice *choice, const char *name, st
   return code;
 }
 
+/* A number for the store, and the part of it, that an operand names. A store beside or below the page has its path from
+ * there, so that both can move. */
+static uint64_t number_of(const char *operand, const char *page) {
+  char store[LIMITS_PATH];
+  ask_choose_operand(operand, store, sizeof store, &(struct ask_choice){0});
+  const char *slash = strrchr(page, '/'), *part = operand + strnlen(store, strlen(operand));
+  OWNED char *folder = slash ? strndup(page, (size_t)(slash - page) + 1) : strdup(".");
+  OWNED char *there = folder ? realpath(folder, NULL) : NULL;
+  OWNED char *real = realpath(store, NULL);
+  const char *path = real ? real : store;
+  const size_t length = there ? strlen(there) : 0;
+  if (length > 0 && strncmp(path, there, length) == 0 && path[length] == '/')
+    path += length + 1;
+  return text_hash(text_hash(TEXT_HASH_START, path, strlen(path) + 1), part, strlen(part));
+}
+
 /* Makes the page. *size: its bytes. */
 static status make(const struct report_choice *choice, size_t *size, struct error *error) {
   struct page_data data[STORES] = {{0}};
@@ -203,7 +219,8 @@ static status make(const struct report_choice *choice, size_t *size, struct erro
   for (size_t i = 0; code == STATUS_OK && i < choice->count; i++)
     code = add_store(choice, choice->stores[i], &data[i], error);
   if (code == STATUS_OK)
-    code = page_write(choice->output, html, html_size, choice->count, data, size, error);
+    code = page_write(choice->output, html, html_size, number_of(choice->stores[0], choice->output), choice->count,
+                      data, size, error);
   for (size_t i = 0; i < choice->count; i++)
     free(data[i].bytes);
   return code;
@@ -265,6 +282,8 @@ static status run(const struct command_line *line, struct error *error) {
                                  .count = line->count,
                                  .stores = line->arguments,
                                  .output = options->output ? options->output : name};
+  if (!options->output && page_is_of_other(name, number_of(line->arguments[0], name)))
+    return status_fail(error, STATUS_IO, "%s is the page of another store: name this one with -o", name);
   if (!options->output)
     TRY(file_claim(name, "page", error));
   const status code = options->watch ? watch(&choice, options->every, &size, error) : make(&choice, &size, error);

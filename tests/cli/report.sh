@@ -19,6 +19,19 @@ says "page.pdf: the page is HTML"
 [ ! -e page.pdf ] || fail "HTML in a file of another ending"
 expect 0 "$clast" report small.db:1 small.db:4 -o pair.html
 expect 64 "$clast" report small.db:9
+# A page replaces no page of another store or of a part of one.
+mkdir one other
+cp small.db one/twin.db
+cp small.db other/twin.db
+cp small.db twin@1.db
+expect 0 "$clast" report one/twin.db
+expect 74 "$clast" report other/twin.db
+says "twin.html is the page of another store: name this one with -o"
+expect 0 "$clast" report other/twin.db -o other/twin.html
+(cd other && expect 0 "$clast" report twin.db) # the same page, from its folder
+expect 0 "$clast" report "$PWD/one/twin.db" small.db # the same store by another name
+expect 0 "$clast" report other/twin.db:1
+expect 74 "$clast" report twin@1.db
 expect 66 "$clast" report none.db:1
 
 expect 66 "$clast" report none.db
@@ -279,7 +292,7 @@ JS
   expect 0 "$clast" report scenes.db
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 62
+  done_after 68
 else
-  done_after 41
+  done_after 47
 fi

@@ -119,7 +119,7 @@ static void test_a_large_store_is_thinned(void **state) {
   struct page_data data = {0};
   fixture_path(file, "page-large-file");
   OK(ask_page_file(page, &data.bytes, &data.size, &error));
-  OK(page_write(file, html, sizeof html - 1, 1, &data, &size, &error));
+  OK(page_write(file, html, sizeof html - 1, 7, 1, &data, &size, &error));
   assert_true(size > 100000 && size < 1150000);
   free(data.bytes);
   unlink(file);
@@ -175,16 +175,19 @@ static void test_a_page_needs_a_place_for_data(void **state) {
   fixture_path(path, "page-file");
   static const unsigned char html[] = "<p>empty</p>", with[] = "<p>a</p><!-- data --><p>b</p>";
   struct page_data data = {.bytes = (unsigned char *)"abc", .size = 3};
-  assert_int_equal(page_write(path, html, sizeof html - 1, 1, &data, &written, &error), STATUS_CONTENT);
+  assert_int_equal(page_write(path, html, sizeof html - 1, 7, 1, &data, &written, &error), STATUS_CONTENT);
   assert_int_not_equal(access(path, F_OK), 0);
-  OK(page_write(path, with, sizeof with - 1, 1, &data, &written, &error));
+  OK(page_write(path, with, sizeof with - 1, 7, 1, &data, &written, &error));
   char text[400] = "";
   FILE *in = fopen(path, "r");
   assert_non_null(in);
   assert_int_equal(fread(text, 1, sizeof text - 1, in), written);
   fclose(in);
+  assert_false(page_is_of_other(path, 7));
+  assert_true(page_is_of_other(path, 8));
   /* gzip -9 of "abc" without a time, in base64 */
-  assert_string_equal(text, "<p>a</p><script type=\"application/octet-stream\" class=\"store\">"
+  assert_string_equal(text, "<p>a</p><script type=\"application/octet-stream\" "
+                            "data-of=\"0000000000000007\" class=\"store\">"
                             "H4sIAAAAAAACA0tMSgYAwkEkNQMAAAA=</script>\n<p>b</p>");
   unlink(path);
 }
