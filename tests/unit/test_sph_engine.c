@@ -81,6 +81,7 @@ static double number_behind(const char *text, const char *words) {
   return strtod(plain, NULL);
 }
 
+/* The text of a projectile of one particle. */
 static void one_particle_is_no_plural(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.projectile_spacing=5");
