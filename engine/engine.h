@@ -9,7 +9,7 @@
 
 /* Knobs: inputs that make a run coarser or finer, or change the physics that it models. Each engine lists its own
  * (engine_kind.knobs): inputs, levels and meaning. Convergence studies (campaign/converge) vary knobs. */
-enum { KNOB_INPUTS = 3, KNOB_LEVELS = 12 };
+enum { KNOB_INPUTS = 4, KNOB_LEVELS = 12 };
 
 enum knob_group {
   KNOB_RESOLUTION, /* its finest level is the reference; its bias is part of the resolution error */
@@ -22,7 +22,10 @@ extern const char *const engine_knob_groups[]; /* "resolution", "part", "model",
 
 struct knob_input {
   const char *path;
-  double power; /* a level of f times the scene's first input sets this one to f^power times its own value */
+  double power;  /* a level of f times the scene's first input sets this one to f^power times its own value; 0 keeps it
+                    where it would follow from others */
+  bool given;    /* only where the scene gives it; unless given, it follows from others */
+  bool at_least; /* never below its own value */
 };
 
 struct knob {
@@ -37,6 +40,8 @@ struct knob {
                         finer levels have larger values */
   bool pairs; /* levels are compared seed by seed: the same seed gives nearly the same run at all of them, or may do
                  so. A pair of independent runs costs degrees of freedom only */
+  /* Prints why a scene does not have the spacing that a level stands for; nothing: it has. NULL: all have. */
+  void (*tell_unkept)(const void *inputs, FILE *out);
   const char *meaning;
 };
 

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/memory.h"
+
 struct making {
   const struct knob *knob;
   const struct scene *base;
@@ -15,22 +17,23 @@ struct making {
   FILE *notes;
 };
 
-/* The knob's inputs that are active in the scene. The first one must be; others may be missing. */
+/* The knob's inputs that are active in the scene and not off. The first one must be; others may be missing. */
 static status find_inputs(struct making *making, struct error *error) {
   const struct field_table *table = making->base->kind->inputs;
   for (size_t i = 0; i < KNOB_INPUTS && making->knob->inputs[i].path; i++) {
     const struct field *row = field_find(table, making->knob->inputs[i].path, error);
     if (!row)
       return STATUS_CONTENT;
-    if (!field_is_active(table, row, making->base->inputs)) {
-      char why[256];
+    char why[256] = "off";
+    const bool active = field_is_active(table, row, making->base->inputs);
+    if (active)
+      field_get(row, making->base->inputs, &making->own[i]);
+    else
       field_describe_inactive(table, row, making->base->inputs, why, sizeof why);
-      if (i == 0)
-        return status_fail(error, STATUS_CONTENT, "%s does not apply: %s is %s", making->knob->name, row->path, why);
-      continue;
-    }
-    making->rows[i] = row;
-    field_get(row, making->base->inputs, &making->own[i]);
+    if (active && !(row->flags & FIELD_MAY_BE_OFF && field_is_off(making->own[i].number)))
+      making->rows[i] = making->knob->inputs[i].given && !making->base->given[row - table->rows] ? NULL : row;
+    else if (i == 0)
+      return status_fail(error, STATUS_CONTENT, "%s does not apply: %s is %s", making->knob->name, row->path, why);
   }
   return STATUS_OK;
 }
@@ -58,11 +61,32 @@ static status set_inputs(const struct making *making, const struct field_value *
     if (!making->rows[i])
       continue;
     struct field_value value = making->own[i];
-    value.number *= pow(factor, making->knob->inputs[i].power);
-    value.integer = llround((double)value.integer * pow(factor, making->knob->inputs[i].power));
+    const double by = pow(factor, making->knob->inputs[i].power);
+    const double change = making->knob->inputs[i].at_least ? fmax(by, 1) : by;
+    value.number *= change;
+    value.integer = llround((double)value.integer * change);
     code = scene_set(scene, making->rows[i]->path, &value, error);
   }
   return code == STATUS_OK ? scene_check(scene, error) : code;
+}
+
+/* Leaves a level out, with a note, when it does not keep what its setting says; where the scene's own one does not
+ * either, all stay. */
+static bool is_unkept(const struct making *making, const struct ladder_level *level) {
+  OWNED char *own = NULL, *why = NULL;
+  if (level->base || !making->knob->tell_unkept)
+    return false;
+  FILE *out = text_open(&own);
+  making->knob->tell_unkept(making->base->inputs, out);
+  text_close_small(out, &own);
+  out = text_open(&why);
+  making->knob->tell_unkept(level->scene->inputs, out);
+  text_close_small(out, &why);
+  if (*own || !*why)
+    return false;
+  if (making->notes)
+    fprintf(making->notes, "%s = %s is left out%s\n", making->rows[0]->path, level->setting, why);
+  return true;
 }
 
 /* Adds a level unless it is there already. One that the scene refuses becomes a note. */
@@ -83,6 +107,10 @@ static status add_level(struct making *making, const struct field_value *value, 
   struct error why = {0};
   if (!level.base && set_inputs(making, value, level.scene, &why) != STATUS_OK) {
     fprintf(making->notes, "%s = %s is left out: %s\n", making->rows[0]->path, level.setting, why.message);
+    scene_free(level.scene);
+    return STATUS_OK;
+  }
+  if (is_unkept(making, &level)) {
     scene_free(level.scene);
     return STATUS_OK;
   }

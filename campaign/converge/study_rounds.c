@@ -185,7 +185,8 @@ static struct study_ladder *choose_ladder(struct rounds *rounds) {
 
 /* ---- a round as a campaign ---- */
 
-/* True when some level gives the input another value than the base scene. False for an input without effect. */
+/* True when some level gives the input another value than the base scene, or keeps the value that follows from others
+ * there. False for an input without effect. */
 static bool is_turned(const struct study_ladder *ladder, size_t input) {
   const struct scene *base = ladder->base;
   const struct field *row = &base->kind->inputs->rows[input];
@@ -196,7 +197,7 @@ static bool is_turned(const struct study_ladder *ladder, size_t input) {
   for (size_t l = 0; l < ladder->levels.count; l++) {
     const struct scene *scene = ladder->levels.level[l].scene;
     field_get(row, scene->inputs, &other);
-    if (scene->given[input] && !field_same_value(row, &own, &other))
+    if (scene->given[input] && !(base->given[input] && field_same_value(row, &own, &other)))
       return true;
   }
   return false;

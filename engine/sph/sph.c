@@ -2,6 +2,7 @@
 #include "engine/sph/sph.h"
 
 #include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
 
 static int64_t *threads(void *inputs) {
   return &((struct sph_inputs *)inputs)->fidelity.threads;
@@ -38,8 +39,21 @@ static const size_t also[] = {offsetof(struct sph_results, crater.depth),
                               offsetof(struct sph_results, precursor.pressure)};
 
 static const struct knob knobs[] = {
-    KNOB("particles", RESOLUTION, .inputs = {{"fidelity.particles", 1}}, KNOB_THIRDS, .step_power = -1.0 / 3,
-         .meaning = "number of particles of the target; the projectile's spacing follows"),
+    KNOB("particles", RESOLUTION,
+         .inputs = {{"fidelity.particles", 1},
+                    {"fidelity.fine_spacing", -1.0 / 3, .given = true},
+                    {"fidelity.fine_radius", 0}},
+         KNOB_THIRDS, .step_power = -1.0 / 3, .tell_unkept = sph_derived_tell_unkept,
+         .meaning = "number of particles of the target; the projectile's spacing follows. Where spacings_per_radius "
+                    "decides the spacing at the point of impact, this and the projectile's stay"),
+    KNOB("impact_zone", RESOLUTION,
+         .inputs = {{"fidelity.spacings_per_radius", 1},
+                    {"fidelity.particles", 3, .at_least = true},
+                    {"fidelity.fine_spacing", -1, .given = true},
+                    {"fidelity.fine_radius", 0}},
+         .factors = {0.5, 0.71, 1, 1.41}, .step_power = -1, .tell_unkept = sph_derived_tell_unkept,
+         .meaning = "particle spacings in the projectile's radius where it hits and in the projectile; finer than the "
+                    "scene's own, the particles grow with their cube"),
     KNOB("points", RESOLUTION, .inputs = {{"fidelity.points", 1}}, KNOB_HALVES, .step_power = -1,
          .meaning = "spacings along a plate"),
     KNOB("projectile", RESOLUTION, .inputs = {{"fidelity.projectile_spacing", 1}}, .factors = {2, 1.41, 1, 0.71},

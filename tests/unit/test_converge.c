@@ -10,6 +10,7 @@
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
 #include "engine/dem/run/run.h"
+#include "engine/sph/scene/inputs.h"
 #include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
@@ -92,6 +93,56 @@ static void ladders_of_all_scenes(void **state) {
     scene_free(scene);
   }
   assert_true(made > 50 && refused > 10);
+}
+
+static bool is_near(double value, double expected) {
+  return fabs(value / expected - 1) < 1e-14;
+}
+
+/* A graded body is fine at the point of impact. The number of particles leaves this zone as it is, and the knob of the
+ * zone keeps its size: else the largest error of an impact is in no study. */
+static void graded_bodies_keep_their_zone(void **state) {
+  (void)state;
+  struct scene *scene = scene_of("solid-ice");
+  const struct sph_inputs *own = scene->inputs;
+  struct ladder ladder;
+  char *notes = NULL;
+  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "4000,12000,36000", &ladder, &notes, &error),
+                   STATUS_OK);
+  assert_int_equal(ladder.count, 2); /* 4000 are too few for five spacings in the radius */
+  assert_non_null(strstr(notes, "fidelity.particles = 4000 is left out: fidelity.coarsest 4 allows the 5 of "));
+  for (size_t l = 0; l < 2; l++) {
+    const struct sph_inputs *in = ladder.level[l].scene->inputs;
+    assert_true(is_near(in->fidelity.fine_spacing, own->fidelity.fine_spacing));
+    assert_true(is_near(in->fidelity.fine_radius, own->fidelity.fine_radius));
+  }
+  ladder_clear(&ladder);
+  free(notes);
+
+  assert_int_equal(ladder_make(knob_of("sph", "impact_zone"), scene, "2.5,5,10", &ladder, &notes, &error), STATUS_OK);
+  assert_int_equal(ladder.count, 3);
+  static const double refined[] = {0.5, 1, 2};
+  for (size_t l = 0; l < 3; l++) {
+    const struct sph_inputs *in = ladder.level[l].scene->inputs;
+    assert_true(is_near(in->fidelity.fine_spacing, own->fidelity.fine_spacing / refined[l]));
+    assert_true(is_near(in->fidelity.fine_radius, own->fidelity.fine_radius));
+    assert_int_equal(in->fidelity.particles, own->fidelity.particles * (l == 2 ? 8 : 1));
+  }
+  ladder_clear(&ladder);
+  free(notes);
+
+  /* Where the scene gives the spacing of the zone itself, it follows the number of particles. */
+  assert_int_equal(scene_set_text(scene, "fidelity.spacings_per_radius", "off", &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "fidelity.fine_spacing", "1 mm", &error), STATUS_OK);
+  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "12000,96000", &ladder, &notes, &error), STATUS_OK);
+  const struct sph_inputs *finer = ladder.level[1].scene->inputs;
+  assert_true(is_near(finer->fidelity.fine_spacing, 0.5e-3));
+  assert_true(is_near(finer->fidelity.fine_radius, 4e-3));
+  ladder_clear(&ladder);
+  free(notes);
+  assert_int_equal(ladder_make(knob_of("sph", "impact_zone"), scene, NULL, &ladder, &notes, &error), STATUS_CONTENT);
+  free(notes);
+  scene_free(scene);
 }
 
 /* Finer grains of a block are more grains: its sides stay, to half a grain. */
@@ -417,6 +468,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(reference_of_a_ladder),
                                      cmocka_unit_test(every_knob_names_inputs_of_its_engine),
                                      cmocka_unit_test(ladders_of_all_scenes),
+                                     cmocka_unit_test(graded_bodies_keep_their_zone),
                                      cmocka_unit_test(blocks_keep_their_sides),
                                      cmocka_unit_test(levels_of_ones_own),
                                      cmocka_unit_test(named_settings_are_levels),
