@@ -362,6 +362,8 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
   return make_campaign(rounds, campaign, error);
 }
 
+static const char no_result[] = "its first run ended without a result";
+
 static status end_round(void *context, const struct scheduler *scheduler, struct error *error) {
   struct rounds *rounds = context;
   if (!rounds->probe)
@@ -369,6 +371,8 @@ static status end_round(void *context, const struct scheduler *scheduler, struct
   TRY(study_read(rounds->study, rounds->ladder, scheduler->store, error));
   learn(rounds);
   judge(rounds);
+  if (rounds->probe && isnan(predict(rounds, rounds->ladder, 0)) && !rounds->study->budget_spent)
+    end_ladder(rounds->ladder, no_result);
   return STATUS_OK;
 }
 
@@ -394,8 +398,13 @@ static status run_study(struct study *study, const struct study_request *request
   if (!launch.manager || code != STATUS_OK)
     return code;
   int64_t most = 0;
-  for (size_t i = 0; i < study->ladder_count; i++)
+  bool died = false;
+  for (size_t i = 0; i < study->ladder_count; i++) {
     most = study->ladder[i].seeds > most ? study->ladder[i].seeds : most;
+    died |= study->ladder[i].end == no_result;
+  }
+  if (most == 0 && died)
+    return status_fail(error, STATUS_FAILED_RUNS, "the first run ended without a result, so that nothing was studied");
   if (most == 0)
     return status_fail(error, STATUS_USAGE,
                        "--seconds %.4g: too short for %lld seeds of two levels of any knob; runs so far are in %s, and "

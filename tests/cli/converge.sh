@@ -609,4 +609,10 @@ expect 65 "$clast" converge bad.yaml --list
 says "bad.yaml:3" # the campaign's own error
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 156
+
+# A first run that dies ends the study: it has no time to plan with.
+printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version: "1"\n  inputs:
+    n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
+expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
+says "ended without a result"
+done_after 157
