@@ -153,7 +153,7 @@ class Store:
     def unit(self, column):
         """The SI unit of a column of the views; "" for a pure number or a text. KeyError: there is no such column."""
         units = [unit for (unit,) in self.connection.execute(
-            "SELECT unit FROM column_doc WHERE column_name = ?", (column,))]
+            "SELECT unit FROM column_doc WHERE column_name = ? ORDER BY table_name LIKE 'result%'", (column,))]
         if not units:
             raise KeyError(f"the store has no column {column!r}")
         return next((unit for unit in units if unit not in (None, "", "1", "-")), "")

@@ -364,14 +364,16 @@ static status per_metre(struct store *store, char *unit, size_t size, struct err
   return answer_end(&answer);
 }
 
-/* Units by column, of the one or of all. The views say the unit of a result that several engines have; a column with
- * different units in different tables has none. */
+/* Units by column, of the one or of all. A result that several engines have is in the unit of the store's engine; a
+ * column with different units in different tables has none. */
 static struct answer ask_units(struct store *store, const char *column, struct error *error) {
-  return answer_to(store, error,
-                   "SELECT column_name, min(unit), NULL FROM column_doc WHERE unit <> '1' AND table_name NOT LIKE "
-                   "'result\\_%%' ESCAPE '\\' AND column_name = ifnull(%Q, column_name) GROUP BY column_name HAVING "
-                   "count(DISTINCT unit) = 1",
-                   column);
+  return answer_to(
+      store, error,
+      "SELECT column_name, ifnull((SELECT min(unit) FROM column_doc r WHERE r.column_name = d.column_name "
+      "AND r.table_name IN (SELECT 'result_' || engine FROM point)), min(unit)), NULL FROM column_doc d WHERE "
+      "unit <> '1' AND table_name NOT LIKE 'result\\_%%' ESCAPE '\\' AND column_name = ifnull(%Q, "
+      "column_name) GROUP BY column_name HAVING count(DISTINCT unit) = 1",
+      column);
 }
 
 status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error) {

@@ -39,13 +39,15 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
     ('_resolution', 'how far finer settings may move the mean (view resolution): '),
     ('_resolution_verdict', 'known, no-difference, at-least, diverges, or not-studied: ')) s
   WHERE d.table_name = 'run' AND d.column_name || s.column1 IN (SELECT name FROM pragma_table_info('points'));
+-- A result that several engines have is that of an engine of this store's points: energies of `dem` are in J/m, of `sph` in J.
 -- CROSS JOIN: SQLite lists the columns of a view once, not once for each row of column_doc.
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
-  WITH d AS MATERIALIZED (
+  WITH of_points AS MATERIALIZED (SELECT DISTINCT 'result_' || engine AS table_name FROM point),
+  d AS MATERIALIZED (
     SELECT table_name, unit, meaning, column_name, table_name || '_' || column_name AS long_name FROM column_doc
     WHERE table_name IN ('run', 'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR table_name GLOB 'result_*')
   SELECT v.column1, c.name, d.unit, d.meaning
   FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v CROSS JOIN pragma_table_info(v.column1) c
     CROSS JOIN (SELECT column_name AS name, * FROM d UNION ALL SELECT long_name, * FROM d) d ON d.name = c.name
   ORDER BY CASE WHEN d.table_name IN ('estimate', 'point_total', 'point_spectrum', 'bin') THEN v.column1 IN ('runs')
-    ELSE v.column1 NOT IN ('runs') END, d.table_name GLOB 'result_*', d.table_name;
+    ELSE v.column1 NOT IN ('runs') END, d.table_name GLOB 'result_*', d.table_name NOT IN of_points, d.table_name;

@@ -204,6 +204,10 @@ same "$(number liquid.db "select (select count(*) from run where largest_fractio
 expect 0 "$clast" merge kinds.db withheld.db liquid.db # masses per metre beside others
 expect 0 "$clast" query kinds.db "select engine, total_mass from runs"
 grep -q 'total_mass *$' out || fail "one unit for masses of two kinds"
+expect 0 "$clast" query liquid.db "select energy_kinetic, energy_input from runs" # of dem in J/m
+grep -qF 'energy_kinetic [J]  energy_input [J]' out || fail "energies of sph in another unit: $(head -1 out)"
+same "$(number liquid.db "select group_concat(unit) from column_doc where table_name = 'runs' and column_name like 'energy_kinetic%'")" J "unit in the store"
+same "$(PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$source/python" python -c "import clast; print(clast.open('liquid.db').unit('energy_kinetic'))")" J "unit in Python"
 expect 64 "$clast" compare withheld.db:1 withheld.db:2 -Q strength
 says "no run that counts has a value of strength that is not withheld"
 ok "withheld values"
@@ -289,4 +293,4 @@ for function in $named; do
   expect 64 "$clast" query marked.db "select $function)"
   says "wrong number of arguments to function $function)"
 done
-done_after 129
+done_after 132
