@@ -250,6 +250,9 @@ static void what_cannot_be_run_is_refused(void **state) {
   accepted("impact: {angle: 89.9 deg}");
   refused("method: {artificial_stress: 0.3}", "artificial_stress");
   refused("target: {shape: box, width: 2 cm}\nsides: {far: damped, depth: 1 cm}", "undamped");
+  refused("target: {shape: box, spin: 300 rad/s}\nsides: {far: damped}\nmethod: {gradient_correction: true}",
+          "sides.far: free");
+  accepted("target: {shape: box, spin: 300 rad/s}\nsides: {far: free}\nmethod: {gradient_correction: true}");
   refused("kind: stretch\ntarget: {shape: cylinder, radius: 1 cm, length: 1 cm}\nfidelity: {particles: 20}",
           "stretch.grip");
   refused("fidelity: {projectile_spacing: 0.001}", "too many");

@@ -224,6 +224,11 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
     REFUSE("target.spin %.4g rad/s without method.gradient_correction: the uncorrected velocity gradient strains a "
            "body that only turns, and breaks it: set method.gradient_correction: true",
            in->target.spin);
+  if (in->target.spin != 0 && in->target.shape == SPH_SHAPE_BOX && in->sides.far == SPH_FAR_DAMPED)
+    REFUSE(
+        "target.spin %.4g rad/s with sides.far: damped: such a box stands for a half-space, which does not turn, and "
+        "its sides would brake the rotation: set sides.far: free, or target.spin: 0",
+        in->target.spin);
   TRY(check_projectile(in, error));
   TRY(check_flight(in, error));
   const double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;
