@@ -360,7 +360,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
   ejecta_momentum_enhancement REAL, -- [1] Impact: 1 plus the momentum of the ejecta, and of matter of the projectile that moves outwards, over that of the projectile, along the normal: what the rest of the target gains, over what the projectile brings. Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.
-  crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
+  crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start, along the outward normal at the point of impact. 0 when it is less than the spacing of the particles.
   crater_radius REAL, -- [m] Impact: radius of a circle whose area is that of the crater at the surface.
   crater_volume REAL, -- [m^3] Impact: volume of the crater, between the surface at the start and the surface of the retained matter.
   crater_compaction_share REAL, -- [1] Impact: volume lost by compaction over the sum of that volume and the ejecta's volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.
@@ -527,7 +527,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   (SELECT "result_sph"."peak_strain" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', event,')))) IS NOT TRUE) AS "peak_strain",
   (SELECT "result_sph"."peak_time" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', event,')))) IS NOT TRUE) AS "peak_time",
   "result_sph"."cracks" AS "cracks",
-  (SELECT "result_sph"."frequency" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', cracked,') OR instr(', ' || r.warnings || ',', ', samples,') OR instr(', ' || r.warnings || ',', ', uneven,')))) IS NOT TRUE) AS "frequency",
+  (SELECT "result_sph"."frequency" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', amplitude,') OR instr(', ' || r.warnings || ',', ', cracked,') OR instr(', ' || r.warnings || ',', ', samples,') OR instr(', ' || r.warnings || ',', ', uneven,')))) IS NOT TRUE) AS "frequency",
   (SELECT "result_sph"."rebound" WHERE (r.warnings <> '' AND (p.engine = 'sph' AND (instr(', ' || r.warnings || ',', ', apart,')))) IS NOT TRUE) AS "rebound",
   "result_sph"."shock_speed" AS "shock_speed",
   "result_sph"."shock_speed_exact" AS "shock_speed_exact",
@@ -1290,7 +1290,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: number of 
 
 INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume lost by compaction over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start, along the outward normal at the point of impact. 0 when it is less than the spacing of the particles.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'crater_radius', 'm', 'Impact: radius of a circle whose area is that of the crater at the surface.', 1);
 
@@ -1530,7 +1530,7 @@ INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: number of parts 
 
 INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume lost by compaction over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.', 0);
+INSERT INTO column_doc VALUES ('runs', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start, along the outward normal at the point of impact. 0 when it is less than the spacing of the particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'crater_radius', 'm', 'Impact: radius of a circle whose area is that of the crater at the surface.', 0);
 

@@ -97,6 +97,49 @@ PY
 done
 ok "three parts"
 
+# A ball bounces off a whole cube, obliquely, on a face that is not level: its momentum enhancement is the momentum that
+# the cube has over that of the ball, both along the normal.
+python - <<'PY'
+import math
+c, s = math.cos(0.4), math.sin(0.4)
+with open('scenes/tilted.obj', 'w') as out:
+    cube = [(x, y, z) for x in (-.5, .5) for y in (-.5, .5) for z in (-.5, .5)]
+    out.writelines(f'v {c * x - s * z:.15g} {y} {s * x + c * z:.15g}\n' for x, y, z in cube)
+    for face in (1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4):
+        out.write('f ' + ' '.join(map(str, face)) + '\n')
+PY
+cat >scenes/tilted.yaml <<'YAML'
+engine: sph
+name: tilted
+kind: impact
+target: {shape: mesh, mesh: {file: ./tilted.obj, unit: 6 cm}, fracture: off, material: {name: basalt, yield_stress: off}}
+projectile: {radius: 2 cm, fracture: off, material: {name: basalt, yield_stress: off}}
+impact: {speed: 30 m/s, angle: 30 deg}
+method: {contact: overlap}
+fidelity: {particles: 2500, projectile_spacing: 1}
+stop: {end_time: 300 us}
+YAML
+expect 0 "$clast" simulate ./scenes/tilted.yaml --fields tilted.hdf --json
+mv out tilted.json
+expect 0 "$clast" handoff tilted.hdf tilted.csv
+python - <<'PY'
+import csv, json, math
+run, (target,) = json.load(open('tilted.json'))[0], csv.DictReader(open('tilted.csv'))
+normal = -math.sin(0.4), math.cos(0.4)
+gained = float(target['mass [kg]']) * sum(n * float(target[f'v{k} [m/s]']) for n, k in zip(normal, 'xz'))
+brought = -run['projectile_mass'] * 30 * math.cos(math.pi / 6)
+found = run['ejecta_momentum_enhancement']
+assert found > 1.2 and abs(found * brought / gained - 1) < 1e-3, (found, gained / brought)  # momentum is kept to 1e-13
+PY
+ok "a face that is not level"
+# A cube that turns about z moves matter along that normal.
+spin() { expect 0 "$clast" simulate ./scenes/tilted.yaml --set method.gradient_correction=true --set stop.end_time='5 us' \
+  --set impact.gap='0.1 mm' --set target.spin="$1"; }
+spin '1000 rad/s' # 30 m/s at an edge, of which sin(0.4) is along the normal
+says "warning: tilt: the speed at which the target's rotation moves its surface"
+spin '800 rad/s'
+! grep -q tilt err || fail "tilt at 800 rad/s"
+
 sed 's/lobes.obj/open.obj/' scenes/lobes.yaml >scenes/open.yaml
 expect 65 "$clast" simulate ./scenes/open.yaml
 says "scenes/open.yaml:5"
@@ -127,4 +170,4 @@ says "have changed since it was stored"
 expect 65 "$clast" check damaged.db
 prints "have changed since it was stored"
 
-done_after 29
+done_after 34

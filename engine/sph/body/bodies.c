@@ -101,9 +101,21 @@ status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, 
   return code;
 }
 
+bool sph_bodies_face(const struct sph_shape *target, const double direction[3], double point[3], double frame[3][3]) {
+  double *aside = frame[0], *normal = frame[2];
+  if (!sph_shape_surface(target, direction, point, normal))
+    return false;
+  const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
+  for (int k = 0; k < 3; k++)
+    aside[k] = (k == towards) - normal[towards] * normal[k];
+  unit(aside, aside);
+  vector3_cross(normal, aside, frame[1]);
+  return true;
+}
+
 status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
                       double angle, double gap, double flight[3], struct error *error) {
-  double outwards[3], point[3], normal[3], aside[3];
+  double outwards[3], point[3], frame[3][3];
   if (!(unit(direction, outwards) > 0) || !isfinite(vector3_dot(direction, direction)))
     return status_fail(error, STATUS_CONTENT, "the place of impact has no direction from the target's centre.");
   if (!(gap >= 0 && isfinite(gap)))
@@ -111,14 +123,11 @@ status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projecti
   if (!(angle >= 0 && angle < M_PI_2))
     return status_fail(error, STATUS_CONTENT, "the impact comes %g degrees from the normal: give 0 to below 90.",
                        angle * 180 / M_PI);
-  if (!sph_shape_surface(target, outwards, point, normal))
+  if (!sph_bodies_face(target, outwards, point, frame))
     return status_fail(error, STATUS_CONTENT,
                        "no point of impact: the line from the target's centre of mass upwards (z) does not meet the "
                        "target. Turn the mesh in its file.");
-  const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
-  for (int k = 0; k < 3; k++)
-    aside[k] = (k == towards) - normal[towards] * normal[k];
-  unit(aside, aside);
+  const double *aside = frame[0], *normal = frame[2];
   const double away = gap + sph_shape_reach(projectile, (const double[3]){-normal[0], -normal[1], -normal[2]});
   for (int k = 0; k < 3; k++) {
     projectile->centre[k] = point[k] + away * normal[k];

@@ -173,10 +173,15 @@ struct sph_range { /* a body's particles: ids first .. first + n - 1 */
 status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, struct sph_particles **out,
                        struct sph_range *ranges, struct error *error);
 
-/* Puts the projectile in front of the target. The ray from the target's centre along `direction` leaves the target at
- * the point of impact; the projectile's surface is `gap` (m) away from it. `flight` becomes the unit vector of its
- * motion: `angle` (rad) from the inward normal, turned towards +x (towards +y if the normal is within 0.1 rad of the x
- * axis). STATUS_CONTENT: no direction, a negative gap, or an angle outside of [0, pi/2). */
+/* Where the ray from the target's centre along `direction` leaves it: the point, and unit vectors there. frame[2] is
+ * the outward normal, frame[0] lies in the face, towards +x (towards +y if the normal is within 0.1 rad of the x axis).
+ * Of a face whose normal is z they are x, y and z. False: a mesh that the ray does not meet. */
+bool sph_bodies_face(const struct sph_shape *target, const double direction[3], double point[3], double frame[3][3]);
+
+/* Puts the projectile in front of the target. The point of impact is that of sph_bodies_face; the
+ * projectile's surface is `gap` (m) away from it. `flight` becomes the unit vector of its motion: `angle` (rad) from
+ * the inward normal, turned towards frame[0]. STATUS_CONTENT: no direction, a negative gap, or an angle outside of [0,
+ * pi/2). */
 status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
                       double angle, double gap, double flight[3], struct error *error);
 

@@ -6,12 +6,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/vector3.h"
 #include "schemas/memory.h"
 
 enum { SIDE_MOST = 2048 }; /* columns along one side */
 
+double sph_crater_speed(const struct sph_particles *p, size_t i) {
+  return sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i] + p->vz[i] * p->vz[i]);
+}
+
+double sph_crater_outwards(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
+  return vector3_dot((const double[3]){p->vx[i], p->vy[i], p->vz[i]}, o->frame[2]);
+}
+
+/* m, of particle i along axis k of the frame. */
+static double place(const struct sph_particles *p, size_t i, const struct sph_crater_options *o, int k) {
+  return vector3_dot((const double[3]){p->x[i], p->y[i], p->z[i]}, o->frame[k]);
+}
+
+static double height(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
+  return place(p, i, o, 2);
+}
+
 static bool is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *o) {
-  return now->vz[i] > o->ejection_speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
+  return sph_crater_outwards(now, i, o) > o->ejection_speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
 }
 
 /* m, of particle i at the start. */
@@ -21,7 +39,7 @@ static double spacing_of(const struct sph_particles *start, size_t i, const stru
 
 /* m, of particle i from the axis. */
 static double off_axis(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
-  return hypot(p->x[i] - o->axis[0], p->y[i] - o->axis[1]);
+  return hypot(place(p, i, o, 0) - o->axis[0], place(p, i, o, 1) - o->axis[1]);
 }
 
 /* m, the highest particle less than `spacings` of its spacings from the axis. */
@@ -29,7 +47,7 @@ static double top_of(const struct sph_particles *start, const struct sph_crater_
   double top = -HUGE_VAL;
   for (size_t i = o->first; i < o->first + o->count; i++)
     if (off_axis(start, i, o) < spacings * spacing_of(start, i, o))
-      top = fmax(top, start->z[i]);
+      top = fmax(top, height(start, i, o));
   return top;
 }
 
@@ -62,10 +80,11 @@ static status make_map(const struct sph_particles *start, const struct sph_crate
                        struct error *error) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    low[0] = fmin(low[0], start->x[i]);
-    low[1] = fmin(low[1], start->y[i]);
-    high[0] = fmax(high[0], start->x[i]);
-    high[1] = fmax(high[1], start->y[i]);
+    const double x = place(start, i, o, 0), y = place(start, i, o, 1);
+    low[0] = fmin(low[0], x);
+    low[1] = fmin(low[1], y);
+    high[0] = fmax(high[0], x);
+    high[1] = fmax(high[1], y);
   }
   double widest = fmax(high[0] - low[0], high[1] - low[1]);
   *m = (struct map){.x = low[0], .y = low[1], .size = fmax(2 * o->spacing, widest / (SIDE_MOST - 1))};
@@ -94,7 +113,8 @@ static void fill_map(const struct sph_particles *start, const struct sph_particl
     for (int later = 0; later < 2; later++) {
       const struct sph_particles *p = later ? now : start;
       const double spacing = spacing_of(start, i, o), wide = (spacing - o->spacing) / m->size;
-      const double x = (p->x[i] - m->x) / m->size, y = (p->y[i] - m->y) / m->size;
+      const double x = (place(p, i, o, 0) - m->x) / m->size, y = (place(p, i, o, 1) - m->y) / m->size;
+      const double z = height(p, i, o);
       long left, right, front, back;
       if (later && is_ejected(now, i, o))
         continue;
@@ -104,13 +124,13 @@ static void fill_map(const struct sph_particles *start, const struct sph_particl
         for (long c = left; c <= right; c++) {
           const size_t at = (size_t)r * m->nx + (size_t)c;
           if (later) {
-            m->after[at] = fmax(m->after[at], p->z[i]);
+            m->after[at] = fmax(m->after[at], z);
             continue;
           }
-          if (p->z[i] > m->before[at])
+          if (z > m->before[at])
             m->least[at] = spacing;
-          m->before[at] = fmax(m->before[at], p->z[i]);
-          m->bottom[at] = fmin(m->bottom[at], p->z[i]);
+          m->before[at] = fmax(m->before[at], z);
+          m->bottom[at] = fmin(m->bottom[at], z);
         }
     }
 }
@@ -184,10 +204,6 @@ static status measure_hole(const struct map *m, const struct sph_crater_options 
   return STATUS_OK;
 }
 
-double sph_crater_speed(const struct sph_particles *p, size_t i) {
-  return sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i] + p->vz[i] * p->vz[i]);
-}
-
 /* Sums over the target's particles. Without a module that compacts matter, all of the crater is ejecta. Matter that
  * falls back has left the crater, but the target keeps it. */
 static void measure_ejecta(const struct sph_particles *start, const struct sph_particles *now,
@@ -201,7 +217,8 @@ static void measure_ejecta(const struct sph_particles *start, const struct sph_p
     const double speed = sph_crater_speed(now, i);
     if (speed < o->escape_speed) /* false for NaN */
       continue;
-    const double along = isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
+    const double outwards = sph_crater_outwards(now, i, o);
+    const double along = isfinite(outwards) ? now->mass[i] * outwards : 0;
     mass += now->mass[i];
     momentum += along;
     ejecta_add(&results->ejecta_over_speed, speed, now->mass[i], along);
@@ -246,9 +263,9 @@ void sph_crater_compaction(const struct sph_particles *start, const struct sph_p
     }
     closed_volume += fmax(closed, 0) * volume; /* the volume of the solid does not change */
     if (crushed && off_axis(start, i, o) < 2 * spacing_of(start, i, o))
-      depth = fmax(depth, top - start->z[i]);
+      depth = fmax(depth, top - height(start, i, o));
     if (closed > 0 && alpha_start - alpha > 0.01 * (initial - 1))
-      reach = fmax(reach, hypot(off_axis(start, i, o), top - start->z[i]));
+      reach = fmax(reach, hypot(off_axis(start, i, o), top - height(start, i, o)));
   }
   results->crater.compaction_share = sph_results_share(closed_volume, closed_volume + ejecta_volume);
   results->palpha.compaction.mass_fraction = sph_results_share(mass, o->mass);
@@ -264,7 +281,7 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
   for (size_t i = o->first; i < o->first + o->count; i++) {
     if (!(off_axis(start, i, o) < 1.5 * spacing_of(start, i, o)) || is_ejected(now, i, o))
       continue;
-    double layer = floor((top - start->z[i]) / o->spacing + 0.5);
+    double layer = floor((top - height(start, i, o)) / o->spacing + 0.5);
     if (!(layer >= 0 && layer < (double)most))
       continue;
     struct sph_crater_layer *l = &layers[(size_t)layer];
@@ -275,7 +292,7 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
       l->pressure += pressure;
       l->bearing += 1;
     }
-    l->velocity += now->vz[i];
+    l->velocity += sph_crater_outwards(now, i, o);
 #define PROFILE_COLUMN(member, of_impact, of_plate, absent, ...)                                                       \
   l->member += now->of_impact ? now->of_impact[i] : absent;
 #include "engine/sph/modules/declarations.h"

@@ -1,9 +1,10 @@
 /* Crater and ejecta of an impact on a target. A pure function of the target's particles at the
  * start and now; its resolution is the spacing of the particles.
  *
- * The impact moves along -z. Ejecta are the target's particles that move outwards (+z) faster than a given speed, in
- * the frame where the target was at rest; all other particles are retained. A map divides the target's outline into
- * columns of two spacings. The surface in a column is the highest retained particle. The crater is the connected region
+ * Outwards is along the outward normal at the point of impact. Ejecta are the target's particles that move outwards
+ * faster than a given speed, in the frame where the target was at rest; all other particles are retained. A map divides
+ * the target's outline, seen along the normal, into columns of two spacings. The surface in a column is the highest
+ * retained particle. The crater is the connected region
  * round the axis where the surface lies at least one spacing deeper than at the start. Two processes make a crater:
  * ejecta leave, and matter is compacted permanently, which the modules that compact it measure. */
 #pragma once
@@ -17,7 +18,8 @@
 struct sph_crater_options {
   size_t first, count;   /* particles of the target */
   double mass;           /* kg, of the target */
-  double axis[2];        /* m, x and y of the point of impact */
+  double frame[3][3];    /* unit vectors at the point of impact: two in the face, and the outward normal */
+  double axis[2];        /* m, along the first two: the point of impact */
   double spacing;        /* m, of the particles at the point of impact */
   bool graded;           /* particles elsewhere are coarser */
   double ejection_speed; /* m/s, outwards */
@@ -26,6 +28,8 @@ struct sph_crater_options {
 
 /* m/s, of particle i, in the frame where the target was at rest. */
 double sph_crater_speed(const struct sph_particles *particles, size_t i);
+/* m/s, along the outward normal. */
+double sph_crater_outwards(const struct sph_particles *particles, size_t i, const struct sph_crater_options *options);
 
 /* Fills the results ejecta.* and crater.*, and the ejecta over their speed. STATUS_MEMORY. */
 status sph_crater_measure(const struct sph_particles *start, const struct sph_particles *now,
@@ -44,7 +48,7 @@ struct sph_crater_layer {
   double
       pressure;   /* Pa, acting; in an impact a mean without broken particles under tension; NaN: there are no others */
   double bearing; /* number of particles in the mean of the pressure */
-  double velocity; /* m/s, along +z */
+  double velocity; /* m/s, outwards */
 #define PROFILE_COLUMN(member, ...) double member;
 #include "engine/sph/modules/declarations.h"
 };

@@ -8,6 +8,7 @@
 #include "engine/sph/modules/module.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
+#include "engine/vector3.h"
 
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
 enum { ROD_PARTS = 100 };
@@ -172,25 +173,32 @@ static double rebound(const struct sph_run *run) {
   return sph_results_finite((speed[1] - speed[0]) / run->inputs.collision.speed);
 }
 
-/* The impact moves down along z at x = y = 0. The axis of an oblique impact is not followed. */
+/* The axis of an oblique impact is not followed. */
 struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
   const struct sph_inputs *in = &run->inputs;
-  return (struct sph_crater_options){.first = run->range[0].first,
-                                     .count = run->range[0].n,
-                                     .mass = run->range[0].mass,
-                                     .spacing = sph_derived_fine_spacing(in),
-                                     .graded = in->fidelity.graded,
-                                     .ejection_speed = in->crater.ejection_speed,
-                                     .escape_speed = in->crater.escape_speed};
+  double point[3];
+  struct sph_crater_options options = {.first = run->range[0].first,
+                                       .count = run->range[0].n,
+                                       .mass = run->range[0].mass,
+                                       .spacing = sph_derived_fine_spacing(in),
+                                       .graded = in->fidelity.graded,
+                                       .ejection_speed = in->crater.ejection_speed,
+                                       .escape_speed = in->crater.escape_speed};
+  sph_bodies_face(&run->shape[0], run->impact_direction, point, options.frame);
+  for (int k = 0; k < 2; k++)
+    options.axis[k] = vector3_dot(point, options.frame[k]);
+  return options;
 }
 
 /* kg m/s, along the outward normal, of the projectile's matter that moves outwards and escapes: a body that rebounds
  * may be slower than crater.ejection_speed. */
-static double carried_back(const struct sph_run *run) {
+static double carried_back(const struct sph_run *run, const struct sph_crater_options *options) {
   double sum = 0;
-  for (size_t i = run->range[1].first; i < run->range[1].first + run->range[1].n; i++)
-    if (run->now->vz[i] > 0 && !(sph_crater_speed(run->now, i) < run->inputs.crater.escape_speed))
-      sum += run->now->mass[i] * run->now->vz[i];
+  for (size_t i = run->range[1].first; i < run->range[1].first + run->range[1].n; i++) {
+    const double outwards = sph_crater_outwards(run->now, i, options);
+    if (outwards > 0 && !(sph_crater_speed(run->now, i) < options->escape_speed))
+      sum += run->now->mass[i] * outwards;
+  }
   return sum;
 }
 
@@ -204,7 +212,7 @@ static status report_protocol(const struct sph_run *run, struct sph_results *res
     options = sph_report_crater_options(run);
     TRY(sph_crater_measure(run->start, run->now, &options, results, error));
     results->ejecta.momentum_enhancement = sph_results_finite(
-        1 + (results->ejecta.momentum + carried_back(run)) /
+        1 + (results->ejecta.momentum + carried_back(run, &options)) /
                 (run->range[1].mass * in->impact.speed * cos(in->impact.angle)));
     return STATUS_OK;
   case SPH_COLLISION: results->rebound = rebound(run); return STATUS_OK;

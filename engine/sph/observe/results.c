@@ -76,8 +76,8 @@ static const struct field rows[] = {
             "Ejecta are faster than crater.ejection_speed; all matter counts that is faster than crater.escape_speed.",
         .source = "Cheng and others 2023"),
     REAL(crater.depth, "m", 0,
-         .doc = "Impact: largest depth of the crater below the surface at the start. 0 when it is less than the "
-                "spacing of the particles."),
+         .doc = "Impact: largest depth of the crater below the surface at the start, along the outward normal at the "
+                "point of impact. 0 when it is less than the spacing of the particles."),
     REAL(crater.radius, "m", 0, .doc = "Impact: radius of a circle whose area is that of the crater at the surface."),
     REAL(crater.volume, "m^3", 0,
          .doc =

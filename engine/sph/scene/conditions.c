@@ -176,6 +176,15 @@ static double cracked(const struct condition_run *r) {
   return run_of(r)->inputs.kind == SPH_VIBRATION ? results_of(r)->mean_damage : (double)NAN;
 }
 
+/* The largest tension in the middle of the bar, in an elastic bar that has its energy, over that which is cut off. */
+static double torn(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const struct sph_material *material = &in->target.material;
+  const double stress = in->vibration.speed *
+                        sqrt(sph_material_young_modulus(material) * sph_derived_density(&in->target));
+  return in->kind == SPH_VIBRATION && in->target.strength ? stress / 3 / material->tension_limit.pressure : (double)NAN;
+}
+
 static double amplitude(const void *inputs) {
   const struct sph_inputs *in = inputs;
   return in->kind == SPH_VIBRATION ? in->vibration.speed / sph_derived_wave_speed(&in->target) : (double)NAN;
@@ -348,15 +357,18 @@ static double flown(const struct condition_run *r) {
   double mass = 0, momentum = 0, beyond = 0;
   if (in->kind != SPH_IMPACT)
     return NAN;
+  const struct sph_crater_options options = sph_report_crater_options(run);
   for (size_t i = target.first; i < target.first + target.n; i++)
-    if (!(now->vz[i] > in->crater.ejection_speed)) {
+    if (!(sph_crater_outwards(now, i, &options) > in->crater.ejection_speed)) {
       mass += now->mass[i];
-      momentum += now->mass[i] * now->vz[i];
+      momentum += now->mass[i] * sph_crater_outwards(now, i, &options);
     }
   const double kept = mass > 0 ? momentum / mass : 0;
-  for (size_t i = projectile.first; i < projectile.first + projectile.n; i++)
-    if (!(now->vz[i] > 0) && !(sph_crater_speed(now, i) < in->crater.escape_speed)) /* slower matter falls back */
-      beyond += now->mass[i] * (now->vz[i] - kept);
+  for (size_t i = projectile.first; i < projectile.first + projectile.n; i++) {
+    const double outwards = sph_crater_outwards(now, i, &options);
+    if (!(outwards > 0) && !(sph_crater_speed(now, i) < in->crater.escape_speed)) /* slower matter falls back */
+      beyond += now->mass[i] * (outwards - kept);
+  }
   return fabs(beyond) / (projectile.mass * in->impact.speed * cos(in->impact.angle));
 }
 
@@ -440,6 +452,19 @@ static double spun(const void *inputs) {
   return turn > 0 ? 2 * turn / (sph_material_young_modulus(&target->material) * weakest(in)) : (double)NAN;
 }
 
+/* The largest speed along the normal that the rotation gives to the target's surface, over crater.ejection_speed. Only
+ * a mesh can have a face of impact across which the axis of rotation (z) is not the normal. */
+static double tilt(const void *inputs) {
+  const struct sph_inputs *in = inputs;
+  const struct sph_shape target = sph_derived_target(in);
+  double point[3], frame[3][3];
+  if (!(in->target.spin != 0) || !sph_bodies_face(&target, (const double[]){0, 0, 1}, point, frame))
+    return NAN;
+  const double one[3] = {frame[2][1], -frame[2][0], 0}, other[3] = {-one[0], -one[1], 0};
+  const double speed = fabs(in->target.spin) * fmax(sph_shape_reach(&target, one), sph_shape_reach(&target, other));
+  return speed > 0 ? speed / in->crater.ejection_speed : (double)NAN;
+}
+
 /* The last stress over the largest one: near 1 the rod still bears its load. */
 static double unbroken(const struct condition_run *r) {
   const struct sph_run *run = run_of(r);
@@ -512,7 +537,7 @@ static double growing(const struct condition_run *r) {
   for (size_t k = 0; k < n; k++)
     floor += layer[k].velocity / (double)n;
   for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++)
-    rest += run->now->mass[i] * run->now->vz[i] / run->range[0].mass;
+    rest += run->now->mass[i] * sph_crater_outwards(run->now, i, &options) / run->range[0].mass;
   return n > 0 ? fabs(floor - rest) * r->outcome->time / fmax(results->crater.depth, options.spacing) : (double)NAN;
 }
 
@@ -849,6 +874,11 @@ const struct condition sph_conditions[] = {
               .doubt = "the strain is so large that the frequency is not that of small vibrations",
               .reason = "elastic-bar rings as at 0.1 m/s up to 0.0065, and 4 % lower at 0.022",
               .remedy = "lower vibration.speed", .results = "frequency", .before = amplitude),
+    CONDITION("amplitude", .number = "the largest tension in the bar (the pressure) over material.tension_limit",
+              .bound = 1, .doubt = "the tension of the wave is cut off, and the bar does not ring as an elastic one",
+              .reason = "elastic-bar rings at 54.8 kHz with 0.95, at 54.7, 53.9 and 90 with 1.1, 1.3 and 40",
+              .remedy = "lower vibration.speed, or set material.tension_limit: off", .results = "frequency",
+              .withheld = true, .before = torn),
     CONDITION("cracked", .number = "the mean damage of the bar", .bound = 0, .doubt = "a bar that cracks does not ring",
               .reason =
                   "elastic-bar with flaws rings at 54.8 kHz whole, at 47 and 38 kHz with a damage of 0.05 and 0.1",
@@ -992,6 +1022,14 @@ const struct condition sph_conditions[] = {
               .doubt = "nothing has come off: a part of the body moves outwards", .reason = "a fragment that is one",
               .remedy = "raise crater.ejection_speed, or give a longer stop.end_time",
               .results = "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement", .after = attached),
+    CONDITION("tilt",
+              .number =
+                  "the speed at which the target's rotation moves its surface along the normal of the face that is "
+                  "hit, over crater.ejection_speed,",
+              .bound = 1, .doubt = "matter that only turns with the target counts as ejecta",
+              .reason = "the axis of rotation is z, and the normal is another",
+              .remedy = "raise crater.ejection_speed, or turn the mesh in its file until that face is level",
+              .results = "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement", .before = tilt),
     CONDITION("flown",
               .number =
                   "the momentum that matter of the projectile keeps beyond that of the target, over all it brought,",

@@ -222,9 +222,10 @@ static const struct field rows[] = {
          .source = "our choice"),
 
     REAL(crater.ejection_speed, "m/s", 10, 0, 1e6, .when = "kind=impact",
-         .doc = "At the end, matter that moves out of the target (along z, against the projectile's flight) faster "
-                "than this counts as ejecta, all else as retained: there is no gravity that could separate them. 0: "
-                "whatever moves outwards.",
+         .doc =
+             "At the end, matter that moves out of the target (along the outward normal at the point of impact) faster "
+             "than this counts as ejecta, all else as retained: there is no gravity that could separate them. 0: "
+             "whatever moves outwards.",
          .source = "Jutzi & Benz, section 3.2, for 0"),
     REAL(crater.escape_speed, "m/s", 0, 0, 1e6, .absent = "0", .when = "kind=impact",
          .doc = "Escape speed of the target. At the end, matter that is slower, in any direction and relative to the "
