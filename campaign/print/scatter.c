@@ -573,6 +573,11 @@ static size_t list_inputs(const struct from_points *p, enum listed kind, char *t
   return count;
 }
 
+/* All points have one run of one seed: nothing is known of the scatter over seeds. */
+static bool at_one_seed(const struct from_points *p) {
+  return p->data.same_seeds && p->data.most == 1;
+}
+
 /* The answer: what matters most, what may matter as much, and what cannot be told. */
 static void write_answer(const struct from_points *p) {
   const size_t first = p->order[0];
@@ -597,7 +602,10 @@ static void write_answer(const struct from_points *p) {
     append_input(p, first, text, sizeof text);
     text_append(text, sizeof text, "%s explains %.0f %% (%.0f to %.0f %%) of the variance of %s %s",
                 alone ? " matters most: alone it" : " alone", 100 * fmax(share->estimate, 0), 100 * share->low,
-                100 * share->high, p->column, share == &p->index[first].of_means ? "between points" : "of single runs");
+                100 * share->high, p->column,
+                at_one_seed(p)                       ? "at this one seed"
+                : share == &p->index[first].of_means ? "between points"
+                                                     : "of single runs");
     if (certain && list_inputs(p, AS_MUCH, others, sizeof others))
       text_append(text, sizeof text, "; %s may matter as much", others);
     *others = '\0';
@@ -656,13 +664,13 @@ static void print_index(const struct from_points *p, size_t a, struct table *tab
 
 static status print_indices(struct from_points *p, enum table_format format, struct error *error) {
   TABLE table = table_new(format, stdout);
-  const bool means = p->data.most > 1 && tells_means(p);
+  const bool means = p->data.most > 1 && tells_means(p), people = table_for_people(format);
   table_column(table, "input", NULL);
   for (int s = 0; s < 2; s++)
     for (int c = 0; c < 3; c++) {
       static const char *const names[2][3] = {{"of_means", "means_low", "means_high"},
                                               {"of_runs", "runs_low", "runs_high"}};
-      table_column(table, names[s][c], NULL);
+      table_column(table, people && s == 1 && c == 0 && at_one_seed(p) ? "share at this seed" : names[s][c], NULL);
       if (s == 0 ? !means : means && c > 0)
         table_rare(table);
     }
@@ -698,6 +706,11 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   if (table_for_people(format))
     write_answer(&p);
   TRY(print_indices(&p, format, error));
+  if (at_one_seed(&p))
+    words_print(stderr, "",
+                "clast: all points share one seed: these are shares at this seed, and the scatter over seeds is not in "
+                "them. Two seeds (per_point: 2), or a seed of its own for each point (independent: true), tell the "
+                "shares of single runs");
   if (!table_for_people(format))
     return STATUS_OK;
   words_print(
@@ -711,7 +724,7 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
           ? ". Share of means: of the variance of the means over seeds; share of runs: of single runs, with "
             "their scatter over seeds"
           : " with one seed each",
-      p.data.most > 1 ? "" : " and of the scatter over seeds");
+      p.data.most > 1 || at_one_seed(&p) ? "" : " and of the scatter over seeds");
   if (p.data.most > 1 && is_told(&p, p.order[0]) && !tells_means(&p))
     words_print(stderr, "",
                 "clast: shares of means are not told: the variance between the means cannot be told from the scatter "
@@ -862,9 +875,11 @@ static status print_sobol(const struct reading *r, enum table_format format, str
         "clast: Sobol indices, shares of the variance, of %zu blocks with %zu %s. first: of the input alone; total: "
         "with what it does together with others%s",
         r->whole, r->table.seeds,
-        r->table.seeds == 1   ? "seed: a total would hold all the scatter of the runs; give the campaign several seeds"
-        : r->table.same_seeds ? "seeds, the same at all points"
-                              : "seeds, different ones at each point",
+        r->table.seeds > 1
+            ? r->table.same_seeds ? "seeds, the same at all points" : "seeds, different ones at each point"
+        : r->table.same_seeds ? "seed, which all points share: the scatter over seeds is not in the shares; give the "
+                                "campaign several seeds"
+                              : "seed: a total would hold all the scatter of the runs; give the campaign several seeds",
         r->table.seeds == 2 && r->table.same_seeds
             ? ". Two seeds are two values of one more input: they make wide intervals, and tell no first order of the "
               "seed"
