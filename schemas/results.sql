@@ -613,7 +613,8 @@ WITH first AS (
   FROM resolution JOIN point USING (point_id) GROUP BY point_id, results_version)
 SELECT p.point_id, p.engine, p.scene_name AS scene,
   (EXISTS (SELECT 1 FROM campaign WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND p.point_id NOT IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND (p.point_id IN (SELECT point_id FROM campaign_point) OR NOT EXISTS (SELECT 1 FROM run AS x WHERE x.point_id = p.point_id))) AS study,
-  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
+  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored,
+  ifnull(t.failed, 0) + iif(t.results_version < (SELECT max(v.results_version) FROM point_total v WHERE v.point_id = p.point_id), 0, (SELECT count(DISTINCT a.seed) FROM attempt a WHERE a.point_id = p.point_id AND a.reason <> 'lost' AND NOT EXISTS (SELECT 1 FROM run x WHERE x.point_id = p.point_id AND (x.seed = a.seed OR (x.surplus & 1 AND x.replicate < a.replicate) OR NOT EXISTS (SELECT 1 FROM run c WHERE c.run_id = x.run_id))))) AS failed,
   ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
   (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic', 'shapes')) AS doubtful,
   ifnull((SELECT group_concat(words, '; ') FROM (SELECT DISTINCT r.warnings AS words FROM run r WHERE r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts AND r.warnings NOT IN ('', 'elastic', 'shapes') ORDER BY words)), '') AS doubts,
@@ -1104,7 +1105,7 @@ INSERT INTO column_doc VALUES ('points', 'engine', NULL, 'name of the engine', 0
 
 INSERT INTO column_doc VALUES ('points', 'excluded', '1', 'runs that a person excluded (clast exclude)', 0);
 
-INSERT INTO column_doc VALUES ('points', 'failed', '1', 'runs that gave no usable result (NaN, time step, energy, invalid)', 0);
+INSERT INTO column_doc VALUES ('points', 'failed', '1', 'runs without a usable result: it is not finite or not valid, or every attempt died; of several results_version, the newest has those that died', 0);
 
 INSERT INTO column_doc VALUES ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers', 0);
 

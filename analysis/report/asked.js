@@ -35,7 +35,7 @@ function computed(store) {
   const counted = sum(points, 'n'), failed = sum(points, 'failed'), censored = sum(points, 'censored'), surplus = sum(points, 'surplus');
   const parts = [`${plural(counted, 'run')} in statistics`];
   if (censored) parts.push(`${censored} of them met their end time while fragments may still have been breaking`);
-  if (failed) parts.push(`${failed} without a usable result`);
+  if (failed) parts.push(`${plural(failed, 'run')} without a usable result: if they fail for a reason that depends on the result, means are biased`);
   const excluded = sum(points, 'excluded');
   if (excluded) parts.push(`${plural(excluded, 'run')} excluded (clast exclude lists them)`);
   if (store.facts.chosen) parts.push(`only ${store.facts.chosen}`);
@@ -55,7 +55,7 @@ function programs(store) {
 function thinned(store) {
   if (store.whole) return store.partial ? 'nothing; but the file was being written when it was copied: without its -wal file the last runs may be missing' : 'nothing';
   const {facts} = store, parts = ['fragment masses of single runs'];
-  const kept = ask(store, questions.keptRuns)[0].n, all = sum(store.points, 'n') + sum(store.points, 'failed');
+  const kept = ask(store, questions.keptRuns)[0].n, all = Number(facts.runs);
   if (kept < all) parts.push(`single runs: of ${all}, ${kept} are here, the first ${plural(Number(facts.replicates_kept), 'seed')} of ${Number(facts.runs_of_every_nth_point) > 1 ? `every ${facts.runs_of_every_nth_point}th` : 'each'} point`);
   if (Number(facts.results_left_out)) parts.push(`${plural(Number(facts.results_left_out), 'result')} of single runs (their means are here)`);
   if (Number(facts.spectra_of_every_nth_point) > 1) parts.push(`spectra, but of every ${facts.spectra_of_every_nth_point}th point`);

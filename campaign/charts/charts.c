@@ -57,8 +57,9 @@ void charts_labels(const char *paths, char *labels, size_t size) {
 void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t size) {
   char names[ASK_GROUP_POOLED];
   charts_labels(pooled->inputs, names, sizeof names);
-  snprintf(text, size, "95 %% intervals over %s%s%s", *names ? "points that differ in " : "seeds", names,
-           *names && pooled->single ? " (of a mark of one point: over seeds)" : "");
+  snprintf(text, size, "95 %% intervals over %s%s%s%s", *names ? "points that differ in " : "seeds", names,
+           *names && pooled->single ? " (of a mark of one point: over seeds)" : "",
+           *names && pooled->same_seeds ? ", without what a seed changes at all points alike" : "");
 }
 
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size) {

@@ -37,9 +37,11 @@ status commands_ask(const struct command_line *line,
   TRY(store_open_reader(line->arguments[0], &store, error));
   TRY(ask_choose(store, &line->choice, error));
   TRY(ask(store, line, error));
-  int64_t excluded = 0, others = 0;
+  int64_t excluded = 0, others = 0, missing = 0, wanted;
   if (line->chooses_runs)
     TRY(ask_run_excluded_count(store, &excluded, error));
+  if (line->chooses_runs && !line->lists_campaigns) /* those tell it by themselves */
+    TRY(ask_run_missing(store, &missing, &wanted, error));
   TRY(ask_choice_others(store, &others, error));
   if (others > 0)
     fprintf(stderr,
@@ -51,6 +53,7 @@ status commands_ask(const struct command_line *line,
     TRY(ask_campaign_namesakes(store, line->choice.campaign, numbers, sizeof numbers, error));
   uncertainty_namesakes(numbers, line->choice.campaign, line->arguments[0]);
   uncertainty_excluded(excluded, line->arguments[0]);
+  uncertainty_missing(missing, wanted, line->arguments[0]);
   uncertainty_left_out(ask_choice_left_out(store));
   return STATUS_OK;
 }

@@ -112,11 +112,12 @@ static status run(const struct command_line *line, struct error *error) {
   TRY(table_end(table, error));
   for (int side = 0; side < 2; side++) {
     const char *path;
-    int64_t left_out;
+    int64_t left_out, wanted;
     const int64_t count = ask_pairs_excluded(pairs, side, &left_out, &path);
     const char *campaign, *numbers = ask_pairs_namesakes(pairs, side, &campaign);
     uncertainty_namesakes(numbers, campaign, path);
     uncertainty_excluded(count, path);
+    uncertainty_missing(ask_pairs_missing(pairs, side, &wanted), wanted, path);
     uncertainty_left_out(left_out);
   }
   OWNED char *apart = NULL;

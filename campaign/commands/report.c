@@ -171,7 +171,7 @@ static status read_inputs(struct making *making, struct error *error) {
 static status add_store(const struct report_choice *choice, const char *name, struct page_data *data,
                         struct error *error) {
   STORE store = NULL;
-  int64_t excluded = 0;
+  int64_t excluded = 0, missing, wanted;
   char path[LIMITS_PATH];
   struct ask_choice runs = choice->runs;
   ask_choose_operand(name, path, sizeof path, &runs);
@@ -181,11 +181,13 @@ static status add_store(const struct report_choice *choice, const char *name, st
   TRY(ask_choose(store, &runs, error));
   TRY(ask_choose_estimates(store, error));
   TRY(ask_run_excluded_count(store, &excluded, error));
+  TRY(ask_run_missing(store, &missing, &wanted, error));
   char numbers[ASK_CAMPAIGN_NUMBERS] = "";
   if (runs.campaign)
     TRY(ask_campaign_namesakes(store, runs.campaign, numbers, sizeof numbers, error));
   uncertainty_namesakes(numbers, runs.campaign, path);
   uncertainty_excluded(excluded, path);
+  uncertainty_missing(missing, wanted, path);
   uncertainty_left_out(ask_choice_left_out(store));
   status code = ask_page_make(store, &making.page, error);
   if (code == STATUS_OK)

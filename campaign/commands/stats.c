@@ -1,5 +1,6 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/words.h"
 
 struct options {
   const char *by, *quantity;
@@ -55,6 +56,12 @@ static status ask(struct store *store, const struct command_line *line, struct e
   if (*changing)
     fprintf(stderr, "clast: from row to row the value of %s changes, too (--by)\n", changing);
   const int64_t levels = *pooled.inputs ? ask_campaign_levels(store) : 0;
+  if (pooled.same_seeds && levels == 0)
+    words_print(
+        stderr, "",
+        "clast: points share seeds: what a seed changes at all of them alike is not in the interval "
+        "(`clast scatter %s --split` tells it, from two seeds on; `independent: true` gives each point its own)",
+        line->arguments[0]);
   if (levels > 0)
     fprintf(stderr,
             "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "

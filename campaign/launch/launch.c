@@ -49,8 +49,9 @@ status launch_series(struct launch *launch, const struct series *series, bool fo
   if (code == STATUS_OK || code == STATUS_STOPPED)
     launch_tell_runs(store, summary.runs_done, found ? summary.runs_reused : -1, summary.cpu_s,
                      clock_s() - launch->begin_s);
-  if (summary.runs_failed)
-    fprintf(stderr, "some runs failed: clast query %s --named failures\n", store);
+  int64_t missing, wanted;
+  if (summary.runs_failed && answers && ask_run_missing(answers, &missing, &wanted, NULL) == STATUS_OK)
+    uncertainty_missing(missing, wanted, store);
   return code;
 }
 
@@ -224,12 +225,14 @@ static status print_answers(const char *path, const struct campaign *document, i
   const char *quantity = document->quantity;
   STORE store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
-  int64_t points = 0;
+  int64_t points = 0, missing, wanted;
   char number[24];
   snprintf(number, sizeof number, "%" PRId64, campaign);
   TRY(store_open_reader(path, &store, error));
   TRY(ask_points_count(store, &choice, &points, error));
   TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error)); /* what is told below tables is of it, too */
+  TRY(ask_run_missing(store, &missing, &wanted, error));
+  uncertainty_missing(missing, wanted, path);
   if (!table_for_people(format)) {
     TRY(print_estimates(store, &choice, format, !quiet, error));
     return quiet ? STATUS_OK : tell_accuracy(store, document, error);

@@ -224,7 +224,7 @@ static void print_legend(const struct printing *printing, FILE *out) {
   text_append(text, sizeof text, ". \xc2\xb1res: how far finer settings may move the number before it%s",
               seen->unknown ? " (?: not studied)" : "");
   if (seen->failed)
-    text_append(text, sizeof text, ". runs 19/20: one of 20 failed");
+    text_append(text, sizeof text, ". runs 19/20: one of 20 gave no result");
   if (seen->beta)
     text_append(text, sizeof text,
                 ". beta: exponent of F(m) ~ m^-beta, of the n fragments that all runs of a point have in the window, "

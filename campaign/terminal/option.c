@@ -294,6 +294,7 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   line->arguments = argv + optind;
   TRY(check_arguments(command, line->count, line->arguments, error));
   line->chooses_runs = command->chooses_runs;
+  line->lists_campaigns = command->lists_campaigns;
   if (parse.shared.allow_commands)
     engine_allow_commands();
   line->choice = parse.shared.choice;

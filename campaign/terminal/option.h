@@ -64,6 +64,7 @@ struct command_line {
   size_t count;        /* operands, as many as the command takes */
   char **arguments;
   bool chooses_runs;        /* of the command */
+  bool lists_campaigns;     /* of the command */
   struct ask_choice choice; /* by --point, --campaign, --where and --studies */
   enum table_format format; /* by --json and --csv; TABLE_TEXT for a command without them */
   bool help;                /* --help was given; then no other argument was checked */

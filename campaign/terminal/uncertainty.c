@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/terminal/words.h"
+
 enum { MOST_DECIMALS = 15 };
 static const double MOST_DIGITS = 1e15; /* a double has no more digits than that */
 static const double SMALL = 1e-3;       /* below it a common power of ten is shorter than zeros */
@@ -93,6 +95,15 @@ void uncertainty_excluded(int64_t count, const char *store) {
   if (count > 0)
     fprintf(stderr, "clast: %" PRId64 " run%s excluded and left out (`clast exclude %s` lists %s)\n", count,
             count == 1 ? " is" : "s are", store, count == 1 ? "it" : "them");
+}
+
+void uncertainty_missing(int64_t missing, int64_t wanted, const char *store) {
+  if (missing > 0)
+    words_print(stderr, "",
+                "clast: %" PRId64 " of %" PRId64
+                " runs gave no result (`clast query %s --named failures`): if they fail "
+                "for a reason that depends on the result, means are biased",
+                missing, wanted, store);
 }
 
 void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path) {

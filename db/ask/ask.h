@@ -38,6 +38,9 @@ status ask_choose_estimates(struct store *store, struct error *error);
 struct answer ask_run_excluded(struct store *store, struct error *error);
 /* Their number. */
 status ask_run_excluded_count(struct store *store, int64_t *count, struct error *error);
+/* The runs that gave no usable result, because they failed or died (`failed` of the view points), of these and those
+ * that count. Of each point's newest results_version. */
+status ask_run_missing(struct store *store, int64_t *missing, int64_t *wanted, struct error *error);
 
 /* ---- The campaigns and sessions of a store: their progress, their documents, and which of their runs are safe
  * (usable, `warnings` is empty), warned (usable, with warnings) or refused (another state, which gives the reason).
@@ -402,6 +405,7 @@ enum { ASK_GROUP_POOLED = 512 };
 struct ask_group_pooled {
   char inputs[ASK_GROUP_POOLED]; /* "threshold.angle, material.m"; "": every group has one point */
   bool single;                   /* a group has one point: its interval is over seeds, also where others pool */
+  bool same_seeds;               /* points of a group share seeds: what a seed does to all is not in the interval */
 };
 struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,
                         struct error *error);
@@ -477,6 +481,8 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
 const char *ask_pairs_namesakes(const struct ask_pairs *pairs, int side, const char **campaign);
 /* The runs of a side (0, 1) that a person excluded, its ask_choice_left_out(), and the path of its store, borrowed. */
 int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path);
+/* ask_run_missing() of a side. */
+int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *wanted);
 /* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. The caller
  * frees *text, also after an error. */
 status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error);

@@ -188,13 +188,33 @@ static void write_names(FILE *out, const struct names *names) {
   }
 }
 
+/* A row for the runs of each point that died, in the columns that write_points() reads. Where the point has no run,
+ * they are of its engine's newest results_version. */
+static void write_died(FILE *out, const struct names *axes, size_t quantities) {
+  fputs(" UNION ALL SELECT ", out);
+  for (size_t i = 0; i < axes->count; i++) {
+    SQL_TEXT value = sql_format("iif(%Q = 'scene', p.scene_name, (SELECT value FROM axis JOIN point_input i USING "
+                                "(path) WHERE i.point_id = p.point_id AND column_name = %Q)), ",
+                                axes->name[i], axes->name[i]);
+    fputs(value, out);
+  }
+  for (size_t i = 0; i < quantities; i++)
+    fputs("NULL, NULL, ", out);
+  fputs("p.engine, (SELECT max(t.results_version) FROM point q JOIN point_total t USING (point_id) WHERE q.engine = "
+        "p.engine AND (q.point_id = p.point_id OR NOT EXISTS (SELECT 1 FROM point_total s WHERE s.point_id = "
+        "p.point_id))), p.point_id, 0, " POINT_DIED(
+            "main.") " AS died, '', 0, NULL, NULL FROM point p WHERE p.point_id "
+                     "IN (SELECT point_id FROM attempt) AND died > 0",
+        out);
+}
+
 /* One row per point of a group: its number of runs and, for quantity N, the number of values rN, mean pN and standard
  * deviation oN. Rows are ordered so that the sums have the same bits for any order in which the runs finished. */
 static void write_points(FILE *out, const struct names *axes, const struct names *quantities) {
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
-  fputs("engine, results_version, point_id, sum(counts) AS n, sum(counts = 0 AND surplus = 0) AS failed, "
-        "sum(counts AND state = 'end-time') AS censored, sum(surplus > 1) AS excluded",
+  fputs("engine, results_version, point_id, sum(counts) AS n, sum(failed) AS failed, sum(counts AND state = "
+        "'end-time') AS censored, sum(surplus > 1) AS excluded",
         out);
   for (size_t i = 0; i < quantities->count; i++) {
     const char *q = quantities->name[i];
@@ -204,13 +224,15 @@ static void write_points(FILE *out, const struct names *axes, const struct names
             "words(iif(counts, w%2$zu, NULL)) AS w%2$zu",
             q, i);
   }
-  fputs("\nFROM (SELECT ", out); /* only the needed columns, because the rows are sorted */
+  fputs("\nFROM (SELECT * FROM (SELECT ", out); /* only the needed columns, because the rows are sorted */
   write_names(out, axes);
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, "\"%1$s\", doubts(engine, warnings, '%1$s') AS w%2$zu, ", quantities->name[i], i);
-  fputs("engine, results_version, point_id, counts, state, surplus FROM runs WHERE surplus <> 1 ORDER BY point_id, "
-        "results_version, replicate, seed)\nGROUP BY ",
+  fputs("engine, results_version, point_id, counts, counts = 0 AND surplus = 0 AS failed, state, surplus, replicate, "
+        "seed FROM runs WHERE surplus <> 1",
         out);
+  write_died(out, axes, quantities->count);
+  fputs(") ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ", out);
   write_names(out, axes);
   fputs("engine, results_version, point_id) LEFT JOIN ", out);
   const char *list[LIMITS_NAMES];
@@ -320,11 +342,16 @@ static status find_pooled(struct store *store, const struct names *axes, struct 
       "grouped h WHERE h.grp = g.grp)",
       grouped);
   TRY(take_first_names(&answer, pooled->inputs));
-  double single;
-  TRY(answer_number(store, &single, error,
-                    "%s SELECT count(*) FROM (SELECT 1 FROM grouped GROUP BY grp HAVING count(*) = 1)", grouped));
-  pooled->single = single > 0;
-  return STATUS_OK;
+  ANSWER kinds = answer_to(store, error,
+                           "%s SELECT total(points = 1), total(shared) FROM (SELECT count(*) AS points, count(seed) > "
+                           "count(DISTINCT seed) AS shared FROM (SELECT grp, (SELECT seed FROM run r WHERE r.point_id "
+                           "= grouped.point_id AND replicate = 0 LIMIT 1) AS seed FROM grouped) GROUP BY grp)",
+                           grouped);
+  if (answer_next(&kinds)) {
+    pooled->single = answer_real(&kinds, 0) > 0;
+    pooled->same_seeds = answer_real(&kinds, 1) > 0;
+  }
+  return answer_end(&kinds);
 }
 
 static const char

@@ -371,6 +371,7 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
                 "replicate, seed",
                 sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
       "runs", 16 + axis_count));
+  TRY(set_fact(reading->page, "runs", (size_t)all, error));
   TRY(set_fact(reading->page, "results_left_out", left_out, error));
   TRY(set_fact(reading->page, "modes_runs", SCATTER_SHAPE_RUNS, error));
   TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));

@@ -26,6 +26,7 @@ struct group {  /* the runs of one point */
 struct side {
   char path[LIMITS_PATH];               /* of the store */
   int64_t excluded;                     /* runs that a person excluded */
+  int64_t missing, wanted;              /* ask_run_missing() */
   int64_t left_out;                     /* ask_choice_left_out() */
   char *axes;                           /* JSON: paths of what it varies */
   struct ask_choice choice;             /* its texts are borrowed from the operands */
@@ -141,6 +142,7 @@ static status read_values(struct store *store, struct ask_pairs *pairs, int k, s
       TRY(add_run(side, &answer, error));
   TRY(answer_end(&answer));
   TRY(ask_run_excluded_count(store, &side->excluded, error));
+  TRY(ask_run_missing(store, &side->missing, &side->wanted, error));
   side->left_out = ask_choice_left_out(store);
   for (size_t i = 0; i < side->group_count; i++) {
     struct group *group = &side->groups[i];
@@ -261,6 +263,11 @@ int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *lef
   *path = pairs->side[side].path;
   *left_out = pairs->side[side].left_out;
   return pairs->side[side].excluded;
+}
+
+int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *wanted) {
+  *wanted = pairs->side[side].wanted;
+  return pairs->side[side].missing;
 }
 
 enum { NAMED = 5 }; /* most inputs with values in a message */

@@ -365,8 +365,12 @@ static void write_points(struct view *view) {
   views_statistics_resolution(count, names, out);
   fputs("\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n", out);
   write_axes(view);
-  fputs("  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
-        "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND "
+  fprintf(out,
+          "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored,\n  ifnull(t.failed, 0) + "
+          "iif(t.results_version < (SELECT max(v.results_version) FROM point_total v WHERE v.point_id = p.point_id), "
+          "0, %s) AS failed,\n",
+          view->stored ? POINT_DIED("") : POINT_DIED("main."));
+  fputs("  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND "
         "r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM "
         "attempt a WHERE a.point_id = p.point_id) AS failed_attempts,\n  (",
         out);

@@ -23,6 +23,14 @@
                                         "campaign_point) OR NOT EXISTS (SELECT 1 FROM " in_                            \
                                         "run AS x WHERE x.point_id = p.point_id))"
 
+/* SQL: how many runs of point p were tried, died (program, crash, limit) and have no result. An attempt that is `lost`
+ * says nothing about its run. Not counted: runs beyond the prefix of a stopping rule, and those of a point of which a
+ * condition has chosen some runs, as nobody knows whether they would meet it. */
+#define POINT_DIED(in_)                                                                                                \
+  "(SELECT count(DISTINCT a.seed) FROM attempt a WHERE a.point_id = p.point_id AND a.reason <> 'lost' AND NOT EXISTS " \
+  "(SELECT 1 FROM " in_ "run x WHERE x.point_id = p.point_id AND (x.seed = a.seed OR (x.surplus & 1 AND x.replicate "  \
+  "< a.replicate) OR NOT EXISTS (SELECT 1 FROM run c WHERE c.run_id = x.run_id))))"
+
 enum { VIEWS_COUNT = 5 };
 extern const char *const views_names[VIEWS_COUNT];
 

@@ -12,6 +12,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('runs', 'doubtful', '1', '1: the run breaks a condition, so that results are in doubt; clast explain WORD says what a word of warnings means'),
   ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded'),
+  ('points', 'failed', '1', 'runs without a usable result: it is not finite or not valid, or every attempt died; of several results_version, the newest has those that died'),
   ('points', 'excluded', '1', 'runs that a person excluded (clast exclude)'),
   ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),
   ('points', 'doubtful', '1', 'runs behind the means that break a condition: their values are in doubt, or have no meaning'),

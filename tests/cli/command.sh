@@ -306,6 +306,34 @@ for _ in $(seq 100); do [ -z "$(ls tmp)" ] && break; sleep 0.1; done
 nothing_left "the campaign's limit"
 ! pgrep -f 'sleep 996.5' >out || fail "a program outlives the campaign's limit"
 
+# ---- runs without a result, failed (a: 3) or died (a: 9), are told wherever there are means ----
+scene gone 'exit_codes: {3: not-finite}' <<'SH'
+echo "{\"x\": $2}"
+[ "$1" = 2 ] || [ $(($2 % 2)) = 0 ] || exit "$1"
+SH
+sed -i 's/per_point: 1/per_point: 6/; $a vary: {a: [2, 3, 9]}' gone-runs.yaml
+expect 1 "$clast" run gone-runs.yaml $word --quiet
+expect 0 "$clast" estimates gone.db --csv
+same "$(grep -v from_[51] out | cut -d, -f3,4 | tr '\n' ' ')" "n,failed 6,0 3,3 3,3 " "runs of estimates"
+expect 0 "$clast" stats gone.db -Q x --by a --csv
+same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 6,0 3,3 3,3 " "runs of means"
+expect 0 "$clast" stats gone.db -Q x --where 'seed > 3' --by a --csv
+same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 3,0 2,1 2,0 " "runs that died are in no choice of runs"
+for command in "estimates gone.db" "stats gone.db -Q x" "scatter gone.db -Q x" "scatter gone.db -Q x --split" "sensitivity gone.db -Q x" \
+  "plot gone.db gone.png -Q x" "report gone.db" "run gone-runs.yaml --quiet $word"; do
+  "$clast" $command >out 2>err || [ "${command%% *}" = run ] || fail "$command"
+  says "6 of 18 runs gave no result"
+done
+for point in 2 3; do
+  expect 0 "$clast" compare gone.db:1 gone.db:$point -Q x
+  says "3 of 6 runs gave no result"
+done
+sed -i 's/a: \[2, 3, 9\]/a: [2, 4]/; s/^name: gone/name: all/' gone-runs.yaml # no run of a: 4 has a result
+sed 's/\$((\$2 % 2))/1/' gone.sh >all.sh && sed 's/gone/all/g' gone.yaml >all.yaml && sed 's/gone/all/g' gone-runs.yaml >all-runs.yaml
+expect 1 "$clast" run all-runs.yaml $word --quiet
+expect 0 "$clast" stats all.db -Q x --by a --csv
+same "$(cut -d, -f1,5,6 out | tr '\n' ' ')" "a,n,failed 2,6,0 4,0,6 " "a point without a result"
+
 # ---- a campaign: the same bits in any way of computing, statistics, resuming ----
 sed 's/per_point: 20/per_point: 6/; s/^name: .*/name: one/' strengths.yaml >one.yaml
 expect 0 "$clast" run one.yaml $word -j 1
@@ -403,4 +431,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 150
+done_after 162

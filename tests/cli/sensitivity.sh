@@ -130,6 +130,24 @@ expect 64 "$clast" sensitivity sweep.yaml --design morris
 says "--design writes a campaign"
 ok "what these points cannot tell"
 
+# ---- one seed for all points: no scatter over seeds is in the shares, nor in a pooled interval
+sed 's/per_point: 2/per_point: 1/; s/^name: .*/name: single/' latin.yaml >single.yaml
+expect 0 "$clast" run single.yaml -j 2 --quiet
+expect 0 "$clast" sensitivity single.db -Q fragment_count --csv
+says "all points share one seed"
+expect 0 "$clast" sensitivity single.db -Q fragment_count
+tr "\n" " " <out | grep -q "at this one seed" || fail "shares of single runs of one seed"
+! grep -Eq "scatter over seeds\. rank|of single runs\. rank" err || fail "the rest is told as the scatter over seeds"
+expect 0 "$clast" stats single.db -Q fragment_count
+says "what a seed changes at all of them alike is not in the interval"
+sed 's/per_point: 1/per_point: 1, independent: true/; s/^name: .*/name: own/' single.yaml >own.yaml
+expect 0 "$clast" run own.yaml -j 2 --quiet
+expect 0 "$clast" sensitivity own.db -Q fragment_count
+tr "\n" " " <out | grep -q "of single runs" || fail "independent seeds"
+expect 0 "$clast" stats own.db -Q fragment_count
+! grep -q "share seeds" err || fail "independent seeds are told as shared"
+ok "seeds that points share"
+
 expect 64 "$clast" sensitivity ask.db sweep.yaml
 says "are no design for sensitivity indices"
 expect 64 "$clast" sensitivity sweep.yaml new.yaml --design grid
@@ -138,4 +156,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 36
+done_after 44

@@ -272,8 +272,10 @@ static void groups_say_what_they_pool(void **state) {
   assert_int_equal(rows.count, M * K);
   assert_string_equal(pooled.inputs, "");
   assert_true(pooled.single);
+  assert_false(pooled.same_seeds);
   OK(keep(ask_group(store, "", "broken_count", &pooled, &error), &rows));
   assert_int_equal(rows.count, 1);
+  assert_true(pooled.same_seeds);
   assert_string_equal(pooled.inputs, "material.k, material.m");
   assert_int_equal(keep(ask_group(store, "q", NULL, &pooled, &error), &rows), STATUS_USAGE);
   assert_non_null(strstr(error.message, "material.m"));

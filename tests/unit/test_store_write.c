@@ -223,6 +223,16 @@ static void failed_and_censored_are_counted_apart(void **state) {
   assert_int_equal(store_attempts(store, attempt.identity, 0, 0), 1);  /* no limit now */
   assert_int_equal(store_attempts(store, f.run.identity, 10, 0), 0);
   assert_near(number(store, "SELECT json_valid('{}') AND NOT json_valid('{') AND json_valid(NULL) IS NULL"), 1, 0);
+  struct store_attempt died = {.point_id = point, .replicate = 6, .seed = 77, .identity = {9}, .reason = "lost"};
+  OK(store_add_attempt(store, &died, &error));
+  died.reason = "exit";
+  died.seed = f.run.seed; /* computed later */
+  OK(store_add_attempt(store, &died, &error));
+  assert_near(number(store, "SELECT failed = 1 FROM points"), 1, 0); /* seed 5 lies beyond the prefix of the rule */
+  died.seed = 78;
+  for (died.attempt = 1; died.attempt <= 2; died.attempt++)
+    OK(store_add_attempt(store, &died, &error));
+  assert_near(number(store, "SELECT n = 8 AND failed = 2 FROM points"), 1, 0);
   const struct store_attempt silent = {.point_id = point, .replicate = 21, .identity = {8}, .attempt = 1};
   OK(store_add_attempt(store, &silent, &error));
   assert_near(number(store, "SELECT count(*) FROM attempt WHERE replicate = 21 AND reason = 'exit' AND message = ''"),
