@@ -41,8 +41,8 @@ static const struct field rows[] = {
         .doc = "Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or "
                "single grains (dem)."),
     REAL(complete_mass, "kg", 0, .label = "least mass with a complete spectrum",
-         .doc = "The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 "
-                "grains (dem: 1.5 mean ones). Exponents use heavier fragments only."),
+         .doc = "The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 of the heaviest) or "
+                "2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only."),
     ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 1,
         .label = "mass share of the largest fragment M₁/M",
         .doc = "Mass of the largest fragment over the total mass, M_1/M."),

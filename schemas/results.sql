@@ -101,7 +101,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   fragment_count INTEGER, -- [1] Fragments of any size, single grains (dust) included.
   single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
   dust_fraction REAL, -- [1] Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).
-  complete_mass REAL, -- [kg] The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
+  complete_mass REAL, -- [kg] The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 of the heaviest) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
   largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M.
   second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
   mean_fragment_mass REAL, -- [kg] Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).
@@ -1421,7 +1421,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass sh
 
 INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
-INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 1);
+INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 of the heaviest) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are numbers)', 0);
 
@@ -1521,7 +1521,7 @@ INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Impact: largest
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Impact: volume that the retained matter lost as its pores closed; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 0);
+INSERT INTO column_doc VALUES ('runs', 'complete_mass', 'kg', 'The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 of the heaviest) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus or excluded, completed or ended at its time, the main results are numbers)', 0);
 

@@ -65,7 +65,8 @@ status point_add(struct store *store, int64_t point_id, const char *where, struc
   double element_mass, complete_mass;
   TRY(read_version(store, point_id, out, error));
   TRY(read_runs(store, point_id, where, out, error));
-  /* The window from_10 of a run begins at a known number of its mean element masses: complete_mass is never above. */
+  /* The window from_10 of a run begins at a known number of its mean element masses, or at complete_mass where that is
+   * above (graded bodies of sph): then all windows begin there, also with an element as heavy. */
   TRY(answer_number(store, &element_mass, error,
                     "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = %lld "
                     "AND r.results_version = %lld AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",

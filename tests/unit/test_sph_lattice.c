@@ -348,6 +348,10 @@ static void finest_zone_keeps_the_coarsest_spacing(void **state) {
     grading.fine = sph_irregular_finest(grading, shape, n, bound);
     assert_true(grading.fine >= asked && grading.fine <= cbrt(sph_shape_volume(shape) / n));
     const double coarsest = coarsest_of(shape, grading, n);
+    /* what is told before points exist; the last one lies a spacing before the far side */
+    const double told = sph_irregular_coarsest(grading, shape, n) / cbrt(sph_shape_volume(shape) / n);
+    if (!(coarsest < 1.02 * told && coarsest > told / 1.12))
+      fail_msg("%g particles, bound %g: %g is told, there is %g", n, bound, told, coarsest);
     if (!(coarsest < 1.02 * bound)) /* shells and points find the far side within 1 % */
       fail_msg("%g particles, bound %g: %g", n, bound, coarsest);
     if (grading.fine > 1.1 * asked) {

@@ -3,6 +3,7 @@
 #include "tests/support/run_case.h"
 
 #include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system.h"
 
 /* A small sphere whose run ends soon. */
@@ -70,6 +71,24 @@ static void small_fragments(void **state) {
   /* by default a thousandth of the target, however many particles it has */
   const double few = SMALL(NULL).fragments.dust_mass, many = SPH_CASE("basalt-sphere", NULL).fragments.dust_mass;
   assert_true(few == many && fabs(few / (4.0 / 3 * M_PI * 2.7e-5 * 2700 * 1e-3) - 1) < 1e-9);
+}
+
+/* The particles of a graded body have many masses: the spectrum is complete from 9.5 of the heaviest on. */
+static void complete_by_the_heaviest(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.graded=true", "fidelity.spacings_per_radius=3",
+                                            "fidelity.coarsest=3", "fidelity.particles=1200",
+                                            "fidelity.projectile_spacing=1", "stop.end_time=20 us");
+  struct ran ran = run_case_run(&sph_engine, &inputs, 1);
+  double single = 0;
+  for (size_t k = 0; k < ran.count; k++)
+    single = fmax(single, ran.fragments[k].count == 1 ? ran.fragments[k].mass : 0);
+  free(ran.fragments);
+  const double heaviest = ran.outcome.complete_mass / 9.5;
+  assert_true(single > 2 * ran.results.sph.target_mass / (double)ran.results.sph.particles && single <= heaviest);
+  /* spacings grow by at most 0.12 of the distance, and the last particle lies a spacing before the far side */
+  const double told = 2700 * pow(sph_derived_coarsest_spacing(&inputs), 3);
+  assert_true(heaviest < 1.03 * told && heaviest > told / pow(1.12, 3));
 }
 
 /* The figures of the ledger in the report, computed again from the particles. Bounds alone do not detect a figure that
@@ -229,6 +248,7 @@ int main(void) {
       cmocka_unit_test(sound_matter_stays_whole),
       cmocka_unit_test(few_pores_change_nothing),
       cmocka_unit_test(small_fragments),
+      cmocka_unit_test(complete_by_the_heaviest),
       cmocka_unit_test(figures_by_hand),
       cmocka_unit_test(rebound_counts_in_the_enhancement),
       cmocka_unit_test(a_share_above_one_is_shown),

@@ -143,6 +143,8 @@ double sph_irregular_finest(struct sph_grading grading, const struct sph_shape *
                             double coarsest);
 /* The fewest particles with which that is grading.fine. */
 double sph_irregular_least(struct sph_grading grading, const struct sph_shape *shape, double coarsest);
+/* The largest spacing (m) of a body of so many particles; at its farthest place from the point. */
+double sph_irregular_coarsest(struct sph_grading grading, const struct sph_shape *shape, double particles);
 /* STATUS_CONTENT: the grading cannot give so many particles. */
 status sph_irregular_check(struct sph_grading grading, const struct sph_shape *shape, double particles,
                            struct error *error);

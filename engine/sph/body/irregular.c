@@ -370,12 +370,34 @@ static status check_range(struct sph_grading *g, double particles, struct shells
   return STATUS_OK;
 }
 
-/* The number of particles with the steepest growth that leaves no spacing of the body above `largest`. */
-static double count_bounded(struct sph_grading grading, struct shells *shells, double largest) {
+/* m, distance of the body's farthest place from the point. */
+static double farthest(const struct shells *shells) {
   int last = SHELLS - 1;
   while (last > 0 && shells->open[last] == 0)
     last--;
-  const double far = fmax(0, shells->r[last + 1] - grading.radius);
+  return shells->r[last + 1];
+}
+
+/* The growth that gives so many particles. */
+static double growth_of(struct sph_grading g, double particles, struct shells *shells) {
+  double low = 0, high = steepest;
+  for (int k = 0; k < 60; k++) {
+    g.growth = 0.5 * (low + high);
+    *(count(&g, shells) > particles ? &low : &high) = g.growth;
+  }
+  return g.growth;
+}
+
+double sph_irregular_coarsest(struct sph_grading grading, const struct sph_shape *shape, double particles) {
+  OWNED struct shells *shells = memory_small(1, sizeof *shells);
+  cut_shells(&grading, shape, shells);
+  grading.growth = growth_of(grading, particles, shells);
+  return relax_spacing(&grading, (double[3]){grading.point[0] + farthest(shells), grading.point[1], grading.point[2]});
+}
+
+/* The number of particles with the steepest growth that leaves no spacing of the body above `largest`. */
+static double count_bounded(struct sph_grading grading, struct shells *shells, double largest) {
+  const double far = fmax(0, farthest(shells) - grading.radius);
   grading.growth = fmin(steepest, (largest - grading.fine) * (far + 4 * grading.fine) / (far * far));
   return count(&grading, shells);
 }
@@ -417,11 +439,7 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
                      struct error *error) {
   if (isnan(g->growth)) {
     TRY(check_range(g, lattice->particles, shells, error));
-    double low = 0, high = steepest;
-    for (int k = 0; k < 60; k++) {
-      g->growth = 0.5 * (low + high);
-      *(count(g, shells) > lattice->particles ? &low : &high) = g->growth;
-    }
+    g->growth = growth_of(*g, lattice->particles, shells);
   } else if (!(g->growth >= 0 && g->growth <= steepest)) {
     return status_fail(error, STATUS_CONTENT,
                        "spacing grows by %g per distance: give 0 to %g, so that neighbours are alike.", g->growth,

@@ -310,12 +310,23 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
   return STATUS_OK;
 }
 
+/* kg, the heaviest particle of all fragments, or of those after the largest one. */
+static double heaviest(const struct sph_run *run, const struct sph_fragments *found, bool off) {
+  double most = 0;
+  for (size_t i = 0; i < run->targets; i++)
+    if (!off || found->label[i] > 0)
+      most = fmax(most, run->now->mass[i]);
+  return most;
+}
+
 static void fill_outcome(const struct sph_run *run, const struct sph_ledger *ledger, double input,
                          const struct sph_fragments *found, struct outcome *outcome) {
   *outcome = frame_outcome(&run->frame,
                            isfinite(run->state.smallest_step) ? run->state.smallest_step : run->system->now.last_step);
+  const double n = (double)run->targets; /* as if all were the heaviest */
+  const double mass = sph_derived_is_graded(&run->inputs) ? n * heaviest(run, found, false) : found->mass;
   const struct outcome_small small = {.dust = run->inputs.fragments.dust_mass,
-                                      .complete = (SPH_FRAGMENTS_COMPLETE - 0.5) * found->mass / (double)run->targets};
+                                      .complete = (SPH_FRAGMENTS_COMPLETE - 0.5) * mass / n};
   outcome_fragments(outcome, found->count, found->fragments, &small);
 
   double change[3], translation = 0;
@@ -345,6 +356,7 @@ status sph_report_finish(void *of, struct outcome *outcome, void *results, struc
   TRY(fill_results(run, &ledger, input, &found, results, error));
   fill_outcome(run, &ledger, input, &found, outcome);
   TRY(find_gaps(run, error));
+  run->heaviest_off = heaviest(run, &found, true);
   const struct condition_run end = {run, in, outcome, results, !run->state.frame.finished};
   condition_after(sph_conditions, &end, outcome->warnings, sizeof outcome->warnings);
   *fragments = found.fragments;

@@ -64,6 +64,7 @@ struct sph_run {
   /* Do particles that belong together stand too far apart at the start, so that a whole body counts as many fragments?
    * Known from the first report on. */
   bool has_gaps;
+  double heaviest_off; /* kg, the heaviest particle of the target that is not in the largest fragment; at the end */
 };
 
 /* Calls of struct engine_kind have its types: the run is a struct sph_run, inputs are a struct sph_inputs. */

@@ -86,26 +86,34 @@ static double layers(const void *inputs) {
   return in->kind == SPH_COLLISION ? wall(&in->target) / sph_derived_spacing(in) : (double)NAN;
 }
 
+/* m: the spacing by which a target as a whole is resolved, the coarsest one. A half-space is resolved where it is hit:
+ * its far part only lets waves out. */
+static double whole_spacing(const struct sph_inputs *in) {
+  return in->sides.far == SPH_FAR_DAMPED ? sph_derived_fine_spacing(in) : sph_derived_coarsest_spacing(in);
+}
+
 /* Spacings through the thinnest side of the target. */
 static double thickness(const void *inputs) {
   const struct sph_inputs *in = inputs;
   const struct sph_shape target = sph_derived_target(in);
-  return in->kind == SPH_COLLISION || in->kind == SPH_PISTON
-             ? (double)NAN
-             : sph_shape_thinnest(&target) / sph_derived_fine_spacing(in);
+  return in->kind == SPH_COLLISION || in->kind == SPH_PISTON ? (double)NAN
+                                                             : sph_shape_thinnest(&target) / whole_spacing(in);
 }
 
 static double dust(const void *inputs) {
   const struct sph_inputs *in = inputs;
   if (!sph_derived_has_projectile(in) && !sph_derived_scene_cracks(in))
     return NAN;
-  const double spacing = sph_derived_spacing(in);
+  const double spacing = whole_spacing(in);
   return in->fragments.dust_mass / (sph_derived_density(&in->target) * spacing * spacing * spacing);
 }
 
-/* Of a whole body 0 is right. */
+/* Of a whole body 0 is right. In a graded body the coarse particles may all have stayed in the largest fragment. */
 static double dust_of_pieces(const struct condition_run *r) {
-  return r->outcome->fragment_count > 1 ? dust(r->inputs) : (double)NAN;
+  const struct sph_inputs *in = r->inputs;
+  if (r->outcome->fragment_count < 2)
+    return NAN;
+  return sph_derived_is_graded(in) ? in->fragments.dust_mass / run_of(r)->heaviest_off : dust(in);
 }
 
 static double largest(const struct condition_run *r) {
@@ -133,8 +141,9 @@ static double cells(const void *inputs) {
 /* Width of the cells over the coarsest spacing of the target. */
 static double narrow(const void *inputs) {
   const struct sph_inputs *in = inputs;
-  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in) ? in->crack_cell.width / sph_derived_spacing(in)
-                                                                  : (double)NAN;
+  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in)
+             ? in->crack_cell.width / sph_derived_coarsest_spacing(in)
+             : (double)NAN;
 }
 
 /* The larger of both viscosities over the largest usual one. With reconstruction a smooth flow feels none of it. */
@@ -257,18 +266,20 @@ static double precursor(const struct condition_run *r) {
  * width of 2 alpha h. */
 static double front(const void *inputs) {
   const struct sph_inputs *in = inputs;
-  const double width = 2 * in->viscosity.alpha * in->fidelity.smoothing * sph_derived_fine_spacing(in);
+  const double spacings = 2 * in->viscosity.alpha * in->fidelity.smoothing;
   double share = NAN;
   if ((in->kind == SPH_IMPACT || in->kind == SPH_COLLISION) && is_porous(&in->target)) {
     const struct sph_shape target = sph_derived_target(in);
     const bool box = in->target.shape == SPH_SHAPE_BOX, turned = in->kind == SPH_COLLISION;
-    share = width / (turned ? 2 * wall(&in->target)
-                     : box  ? sph_derived_shortest_side(&in->target)
-                            : cbrt(sph_shape_volume(&target)));
+    share = spacings * whole_spacing(in) /
+            (turned ? 2 * wall(&in->target)
+             : box  ? sph_derived_shortest_side(&in->target)
+                    : cbrt(sph_shape_volume(&target)));
   }
   if (sph_derived_has_projectile(in) && is_porous(&in->projectile)) {
     const struct sph_shape projectile = sph_derived_projectile(in);
-    share = fmax(share, width * in->fidelity.projectile_spacing / cbrt(sph_shape_volume(&projectile)));
+    share = fmax(share, spacings * sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing /
+                            cbrt(sph_shape_volume(&projectile)));
   }
   return share;
 }
@@ -798,10 +809,12 @@ const struct condition sph_conditions[] = {
               .doubt = "the wall is not resolved, and the speed of the rebound moves with the particles",
               .reason = "rings of 4 come back as fast as those of 5 within 2 % (tests/verification/sph_rings.md)",
               .remedy = "take more particles", .results = ALL_OF_AN_IMPACT, .before = layers),
-    CONDITION("thin", .number = "the number of particle spacings through the target's thinnest side", .bound = 3.5,
-              .least = true, .doubt = "most particles lie at a surface, and bending and cracks are not resolved",
+    CONDITION("thin", .number = "the number of the coarsest particle spacings through the target's thinnest side",
+              .bound = 3.5, .least = true,
+              .doubt = "most particles lie at a surface, and bending and cracks are not resolved",
               .reason = "a plate of 8 mm that breaks keeps 0.17, 0.28, 0.35 and 0.44 undamaged with 1.2, 2, 3 and 4; "
-                        "tensile-rod has 25 cracks with 3.4, and 2 from 4.2 on",
+                        "tensile-rod has 25 cracks with 3.4, and 2 from 4.2 on; half-spaces count by the spacing where "
+                        "they are hit",
               .remedy = "take more particles", .before = thickness),
     CONDITION("single", .number = "the mass of the largest fragment over complete_mass, that of 9.5 particles,",
               .bound = 1, .least = true, .doubt = "no fragment is left that the particles resolve",
@@ -820,11 +833,11 @@ const struct condition sph_conditions[] = {
               .doubt = "a liquid is never damaged, so its matter counts as whole", .reason = "damage means cracks",
               .remedy = "use masses of the crater and the ejecta", .results = ALL_OF_A_BODY, .withheld = true,
               .before = liquid),
-    CONDITION("dust", .number = "fragments.dust_mass in particles", .bound = 2, .least = true,
+    CONDITION("dust", .number = "fragments.dust_mass in the heaviest particles", .bound = 2, .least = true,
               .doubt = "dust is then no fragment at all, or single particles",
               .reason = "a fragment of one particle has no strength of its own",
               .remedy = "take more particles, or give a larger fragments.dust_mass", .results = "dust_fraction",
-              .withheld = true, .if_so = "the body breaks", .before = dust, .after = dust_of_pieces),
+              .withheld = true, .if_so = "such particles come off", .before = dust, .after = dust_of_pieces),
     CONDITION("uncracked", .number = "the number of pieces of a body without flaws", .bound = 1,
               .doubt = "it cannot crack: its particles have lost their neighbours", .reason = "no flaws, no fragments",
               .remedy = "give the material weibull.m and weibull.k",
@@ -856,7 +869,7 @@ const struct condition sph_conditions[] = {
     CONDITION("links", .number = "the distance up to which particles belong together, over that of second neighbours,",
               .bound = 1, .doubt = "fragments that lie apart count as one", .reason = "geometry of the particles",
               .remedy = "leave out fragments.link_length", .before = reach_too_far),
-    CONDITION("cells", .number = "fracture.cell over the particle spacing", .bound = 1, .least = true,
+    CONDITION("cells", .number = "fracture.cell over the coarsest particle spacing", .bound = 1, .least = true,
               .doubt = "a cell holds one particle or none: each particle cracks by itself, as without cells",
               .reason = "geometry", .remedy = "take more particles, or a larger fracture.cell", .before = narrow),
     CONDITION("cells", .number = "fracture.cell over the cube root of the target's volume", .bound = 0.25,

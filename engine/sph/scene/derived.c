@@ -181,9 +181,12 @@ double sph_derived_spacing(const struct sph_inputs *in) {
   return cbrt(sph_shape_volume(&shape) / (double)in->fidelity.particles);
 }
 
+bool sph_derived_is_graded(const struct sph_inputs *in) {
+  return in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.fine_spacing > 0;
+}
+
 double sph_derived_fine_spacing(const struct sph_inputs *in) {
-  bool graded = in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.fine_spacing > 0;
-  return graded ? in->fidelity.fine_spacing : sph_derived_spacing(in);
+  return sph_derived_is_graded(in) ? in->fidelity.fine_spacing : sph_derived_spacing(in);
 }
 
 struct sph_grading sph_derived_grading(const struct sph_inputs *in, const struct sph_shape *target) {
@@ -191,6 +194,13 @@ struct sph_grading sph_derived_grading(const struct sph_inputs *in, const struct
   double normal[3];
   sph_shape_surface(target, (const double[]){0, 0, 1}, grading.point, normal);
   return grading;
+}
+
+double sph_derived_coarsest_spacing(const struct sph_inputs *in) {
+  const struct sph_shape target = sph_derived_target(in);
+  if (!sph_derived_is_graded(in) || !(sph_shape_volume(&target) > 0))
+    return sph_derived_spacing(in);
+  return sph_irregular_coarsest(sph_derived_grading(in, &target), &target, (double)in->fidelity.particles);
 }
 
 double sph_derived_asked_spacing(const struct sph_inputs *in) {

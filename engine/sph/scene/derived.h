@@ -25,10 +25,12 @@ struct sph_shape sph_derived_piston(const struct sph_inputs *inputs);  /* outlin
 /* Thickness, m, of a body that repeats along y or z (direction 1 or 2): whole periods of the target's lattice, not less
  * than `at_least`, and thick enough that no particle meets its own image. */
 double sph_derived_thickness(const struct sph_inputs *inputs, int direction, double at_least);
-double sph_derived_target_mass(const struct sph_inputs *inputs);     /* kg */
-double sph_derived_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
-double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
-double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
+double sph_derived_target_mass(const struct sph_inputs *inputs);      /* kg */
+double sph_derived_projectile_mass(const struct sph_inputs *inputs);  /* kg; 0 without one */
+double sph_derived_spacing(const struct sph_inputs *inputs);          /* m, of the target: (V/n)^(1/3) */
+bool sph_derived_is_graded(const struct sph_inputs *inputs);          /* have the target's particles several masses? */
+double sph_derived_fine_spacing(const struct sph_inputs *inputs);     /* m, of the target where the projectile hits */
+double sph_derived_coarsest_spacing(const struct sph_inputs *inputs); /* m, of the target where it is largest */
 /* m, the fine spacing of fidelity.spacings_per_radius, or what fidelity.coarsest leaves of it */
 double sph_derived_asked_spacing(const struct sph_inputs *inputs);
 /* Prints ": why this is coarser than fidelity.spacings_per_radius asks, and from how many particles on it is not". */

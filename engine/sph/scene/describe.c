@@ -169,8 +169,8 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
     shape("projectile", &projectile, &in->projectile, sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing,
           false, out);
     if (in->fidelity.graded) {
-      fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact", in->fidelity.fine_spacing,
-              in->fidelity.fine_radius);
+      fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact, up to %.3g m far from it",
+              in->fidelity.fine_spacing, in->fidelity.fine_radius, sph_derived_coarsest_spacing(in));
       sph_derived_tell_unkept(in, out);
       fputc('\n', out);
     }
