@@ -1,6 +1,7 @@
 /* The gradient correction between body and debris: what the kernels make of moments that are neither. By hand: with
  * s(t) = t^2 (3 - 2t), t from 0 at a mean eigenvalue of 0.1 (a determinant over its cube of 0.3) to 1 at 0.2 (at 0.6),
- * and both multiplied, B is s times the inverse plus 1 - s times 1. s(1/4) = 5/32, s(1/2) = 1/2, s(3/4) = 27/32. */
+ * and both multiplied, B is s times the inverse plus 1 - s times 1. s(1/4) = 5/32, s(1/2) = 1/2, s(3/4) = 27/32.
+ * Where the target spins, rotations are whole for any B. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -95,7 +96,53 @@ static void shares_between_body_and_debris(void **state) {
   unsetenv("CLAST_CPU");
 }
 
+/* What the kernels make of the gradient `first` times M. */
+static void finish(bool turns, const double first[9], double gradient[9][CASES]) {
+  static double moment[6][CASES], old[6][CASES], power[CASES], zero[CASES];
+  const struct sph_pair_options options = {.gradient_correction.on = true, .turns = turns};
+  struct sph_pair_fields fields = {.density = zero, .pressure_term = zero};
+  struct sph_pair_sums sums = {.power = power};
+  for (int i = 0; i < CASES; i++) {
+    const double d = sqrt(cases[i].d_squared),
+                 value[3] = {cases[i].size, cases[i].size * (1 + d), cases[i].size * (1 - d)};
+    double m[6];
+    tensor(value, m);
+    for (int k = 0; k < 6; k++)
+      moment[k][i] = m[k];
+    for (int k = 0; k < 9; k++)
+      gradient[k][i] = first[k / 3 * 3] * m[at[0][k % 3]] + first[k / 3 * 3 + 1] * m[at[1][k % 3]] +
+                       first[k / 3 * 3 + 2] * m[at[2][k % 3]];
+  }
+  for (int k = 0; k < 6; k++)
+    fields.correction[k] = old[k], sums.correction[k] = moment[k];
+  for (int k = 0; k < 9; k++)
+    sums.gradient[k] = gradient[k];
+  sph_pairs_kernels_choose()->finish_gradient_correction(&options, &fields, 0, CASES, &sums);
+}
+
+/* Where the target spins, the gradient of a rigid rotation is that rotation, whatever the share; a particle alone keeps
+ * its bits, and any gradient its trace. Tolerance: neighbours in line add 1e-9 of the trace to the moment of inertia,
+ * which is at least 0.19 of it here. */
+static void rotations_stay_whole(void **state) {
+  (void)state;
+  static const double turning[9] = {0, -3, 2, 3, 0, -1, -2, 1, 0}, any[9] = {4, 1, -2, 5, -3, 7, 1, -8, 2};
+  static double whole[9][CASES], plain[9][CASES];
+  finish(true, turning, whole);
+  finish(false, turning, plain);
+  for (int i = 0; i < CASES; i++)
+    for (int k = 0; k < 9; k++)
+      if (cases[i].size < 0.05)
+        assert_true(whole[k][i] == plain[k][i]);
+      else if (!(fabs(whole[k][i] - turning[k]) < 1e-7))
+        fail_msg("case %d: gradient[%d] = %.17g, not %g", i, k, whole[k][i], turning[k]);
+  finish(true, any, whole);
+  finish(false, any, plain);
+  for (int i = 0; i < CASES; i++)
+    assert_true(fabs(whole[0][i] + whole[4][i] + whole[8][i] - plain[0][i] - plain[4][i] - plain[8][i]) < 1e-12);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(shares_between_body_and_debris)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(shares_between_body_and_debris),
+                                     cmocka_unit_test(rotations_stay_whole)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,6 +94,38 @@ INLINE vec invert(const vec m[6], vec inverse[6]) {
   return part;
 }
 
+/* Where the target spins. Edges and corners have a share p of the inverse below 1. There a rigid rotation W has the
+ * gradient W M B, with shear of the order of W, and would break them. So they get g B + (1 - p) W (1 - M); as M B = p +
+ * (1 - p) M, this is W again, and the trace stays. W is the rotation of the neighbours about the particle: their
+ * angular momentum over their moment of inertia, with the weights in M as masses. Neighbours in line have no rotation
+ * about that line. W fades where the mean eigenvalue of M is that of less than one neighbour. Fills in what is to be
+ * added. Not inline: the compiler shall contract correct_some as it did, so that bits without spin stay. */
+static __attribute__((noinline)) void missing_rotation(const struct sph_pair_sums *sums, size_t k, size_t lanes,
+                                                       vec added[9]) {
+  const vec zero = {0};
+  vec m[6], g[9], unused[6];
+  for (int c = 0; c < 6; c++)
+    m[c] = vec_load_first(sums->correction[c] + k, lanes);
+  for (int c = 0; c < 9; c++)
+    g[c] = vec_load_first(sums->gradient[c] + k, lanes);
+  const double in_line = 1e-9, neighbour = 0.05;
+  const vec trace = m[0] + m[3] + m[5], most = trace * (1 + in_line);
+  const vec xx = most - m[0], yy = most - m[3], zz = most - m[5]; /* of the inertia; xy is -m[1] */
+  const vec a = yy * zz - m[4] * m[4], b = m[2] * m[4] + m[1] * zz, c = m[1] * m[4] + m[2] * yy;
+  const vec d = xx * zz - m[2] * m[2], e = m[1] * m[2] + m[4] * xx, f = xx * yy - m[1] * m[1];
+  const vec determinant = xx * a - m[1] * b - m[2] * c;
+  const vec_mask any = vec_less(zero, determinant);
+  const vec rest = (1 - invert(m, unused)) * smooth_step(trace / 3, 0, neighbour);
+  const vec s = vec_keep(any, rest) / vec_select(any, determinant, zero + 1);
+  const vec along[3] = {g[7] - g[5], g[2] - g[6], g[3] - g[1]}; /* the angular momentum */
+  const vec x = s * (a * along[0] + b * along[1] + c * along[2]);
+  const vec y = s * (b * along[0] + d * along[1] + e * along[2]);
+  const vec z = s * (c * along[0] + e * along[1] + f * along[2]);
+  const vec turning[9] = {zero, -z, y, z, zero, -x, -y, x, zero};
+  const vec missing[6] = {1 - m[0], -m[1], -m[2], 1 - m[3], -m[4], 1 - m[5]};
+  times(missing, turning, added);
+}
+
 /* Corrects `lanes` particles: those from place `k` of the sums on, which are those from i on of the fields. */
 INLINE void correct_some(const struct sph_pair_options *options, const struct sph_pair_fields *f, size_t i,
                          const struct sph_pair_sums *sums, size_t k, const size_t lanes) {
@@ -137,13 +169,23 @@ INLINE void correct_some(const struct sph_pair_options *options, const struct sp
     vec_store_first(sums->gradient[c] + k, out[c], lanes);
 }
 
+INLINE void correct(const struct sph_pair_options *options, const struct sph_pair_fields *f, size_t i,
+                    const struct sph_pair_sums *sums, size_t k, const size_t lanes) {
+  vec added[9];
+  if (options->turns)
+    missing_rotation(sums, k, lanes, added);
+  correct_some(options, f, i, sums, k, lanes);
+  for (int c = 0; c < 9 && options->turns; c++)
+    vec_store_first(sums->gradient[c] + k, vec_load_first(sums->gradient[c] + k, lanes) + added[c], lanes);
+}
+
 static void gradient_correction_finish(const struct sph_pair_options *options, const struct sph_pair_fields *f,
                                        size_t first, size_t count, const struct sph_pair_sums *sums) {
   size_t k = 0;
   for (; k + LANES <= count; k += LANES)
-    correct_some(options, f, first + k, sums, k, LANES);
+    correct(options, f, first + k, sums, k, LANES);
   if (k < count)
-    correct_some(options, f, first + k, sums, k, count - k);
+    correct(options, f, first + k, sums, k, count - k);
 }
 
 #endif

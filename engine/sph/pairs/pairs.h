@@ -31,6 +31,7 @@ struct sph_pair_options {
   struct sph_method method;
   struct sph_fidelity fidelity; /* precision, and threads, on which the bits do not depend */
   bool strength;                /* stress[] is given; else the pressure alone */
+  bool turns;                   /* the target spins: gradients keep rotations whole (gradient_correction.h) */
   double spacing_over_h;        /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
   double periodic[3];           /* m, length of the periodic box along each axis; NaN = open */
   /* By place: the body of a particle; the caller's, and constant. NULL: all pairs are in the loop, whatever their

@@ -387,6 +387,7 @@ static status make_pairs(struct sph_system *s, struct error *error) {
       .method = s->in.method,
       .fidelity = s->in.fidelity,
       .strength = s->c.stress[0] != NULL,
+      .turns = s->in.target.spin != 0,
       .spacing_over_h = s->domain.spacing_over_h,
       .body = s->body,
 #define MODULE_INPUTS(name) .name = s->in.name,
