@@ -106,6 +106,8 @@ struct engine_kind {
   /* STATUS_CONTENT when an input is missing (one flag per input row) that must be given although it has a default or
    * may be off. NULL: no such input. */
   status (*check_given)(const void *inputs, const bool *given, struct error *error);
+  /* A sentence for the user about inputs of which only a part was given, without a full stop; "": none. NULL: never. */
+  void (*remark)(const void *inputs, const bool *given, char *text, size_t size);
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   const struct condition *conditions; /* under which results are valid (engine/condition.h); NULL: none are known */

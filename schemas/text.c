@@ -303,6 +303,12 @@ bool text_append_word(char *text, size_t size, const char *word) {
   return fits && text_append(text, size, "'");
 }
 
+const char *text_word(const char *word, char shown[TEXT_WORD]) {
+  shown[0] = '\0';
+  text_append_word(shown, TEXT_WORD, word);
+  return shown + 1;
+}
+
 void text_append_fixed(char *text, size_t size, double number, int decimals) {
   if (fabs(number) > 1e6)
     text_append(text, size, "%.5g", number);

@@ -44,6 +44,9 @@ bool text_is_one_of(const char *text, const char *const *words);
 bool text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same with a blank and a word of a command line, as a shell reads it back: " demo.db", " 'a b'". */
 bool text_append_word(char *text, size_t size, const char *word);
+/* Such a word for a command within a sentence. Returns it, in `shown`. */
+enum { TEXT_WORD = 4200 };
+const char *text_word(const char *word, char shown[TEXT_WORD]);
 
 /* Appends a number with so many decimals, or with five digits and an exponent ("1e+308") from a million on, where
  * people do not count digits. */

@@ -552,7 +552,7 @@ static void label_lines(struct plot *plot, const char *by) {
 static void tell_changing(const struct quantity *quantity, const char *drawn, char *caption, size_t size) {
   char sentence[ASK_GROUP_POOLED + 100];
   charts_labels(quantity->changing, sentence, sizeof sentence);
-  text_append(caption, size, "; from mark to mark %s changes, too", sentence);
+  text_append(caption, size, "; from point to point %s changes, too", sentence);
   fprintf(stderr, "clast: %sfrom one to the next %s changes, too; `clast sensitivity` ranks the inputs\n", drawn,
           sentence);
 }
@@ -667,7 +667,7 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   if (*quantity->untold)
     text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);
   if (*quantity->changing)
-    tell_changing(quantity, "behind the marks: ", caption, sizeof caption);
+    tell_changing(quantity, "", caption, sizeof caption);
   TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, panels->count,
                      panels->count ? label : NULL, error);
@@ -737,6 +737,22 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
   return draw_tiles(store, quantity, count, tile, &panels, widest, page, error);
 }
 
+/* An axis of words alone, such as names of materials, has no place on a map. */
+static status check_numbers(const struct quantity *quantity, const char *const inputs[AXES], struct error *error) {
+  for (size_t i = 0; i < 2; i++) {
+    size_t words = 0;
+    for (size_t r = 0; r < quantity->count; r++)
+      words += isnan(quantity->row[r].input[i]) && *quantity->row[r].text[i];
+    if (words > 0 && words == quantity->count)
+      return status_fail(
+          error, STATUS_USAGE,
+          "the values of %s are words, and both axes of a map have numbers: `clast plot` draws words, with "
+          "-x %s --by %s",
+          inputs[i], inputs[i], inputs[1 - i]);
+  }
+  return STATUS_OK;
+}
+
 status quantity_map(struct store *store, const char *x, const char *y, const char *by, const char *name,
                     const struct picture_page *page, struct error *error) {
   __attribute__((cleanup(release))) struct quantity quantity = {0};
@@ -747,6 +763,7 @@ status quantity_map(struct store *store, const char *x, const char *y, const cha
   TRY(read_quantity(store, inputs, name, true,
                     "a map needs two different inputs (--x, --y), at most a third one (--by) and one quantity",
                     &quantity, error));
+  TRY(check_numbers(&quantity, inputs, error));
   keep_drawn(&quantity, 2);
   TRY(memory_array(&tile, quantity.count, sizeof *tile, "the map", error));
   TRY(make_tiles(store, &quantity, tile, page, error));

@@ -15,11 +15,12 @@ static status check(const struct command_line *line, struct error *error) {
     if (!*line->arguments[i] || strspn(line->arguments[i], "0123456789") != strlen(line->arguments[i]))
       return status_fail(error, STATUS_USAGE, "RUN is a number (run_id in the view runs), got \"%.64s\"",
                          line->arguments[i]);
+  char word[TEXT_WORD];
   if (line->count == 1 && (options->reason || options->undo))
     return status_fail(error, STATUS_USAGE,
                        options->undo ? "which run? `clast exclude %s` lists those that are excluded, by run_id"
                                      : "which run? The query of `clast exclude --help` on %s lists them by run_id",
-                       line->arguments[0]);
+                       text_word(line->arguments[0], word));
   if (line->count > 1 && reason == options->undo)
     return status_fail(error, STATUS_USAGE,
                        "give --reason TEXT, which the store keeps, or --undo to count the run again");

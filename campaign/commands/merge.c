@@ -5,6 +5,7 @@
 static status merge_source(struct store *store, const char *target, const char *source, int64_t *differing,
                            struct error *error) {
   int64_t added = 0;
+  char source_word[TEXT_WORD], target_word[TEXT_WORD];
   *differing = 0;
   TRY(store_merge(store, source, &added, differing, error));
   fprintf(stderr, "%s: %" PRId64 " run%s added\n", source, added, text_plural(added));
@@ -14,13 +15,15 @@ static status merge_source(struct store *store, const char *target, const char *
             "clast: warning: %s excludes %" PRId64
             " run%s that count%s in %s: `clast exclude %s` lists them with their "
             "reasons, `clast exclude %s RUN --reason TEXT` excludes one here, too\n",
-            source, excluded, text_plural(excluded), excluded == 1 ? "s" : "", target, source, target);
+            source, excluded, text_plural(excluded), excluded == 1 ? "s" : "", target, text_word(source, source_word),
+            text_word(target, target_word));
   if (here)
     fprintf(stderr,
             "clast: %" PRId64
             " run%s of %s stay%s excluded in %s: `clast exclude %s` lists them, `clast exclude %s RUN "
             "--undo` counts one again\n",
-            here, text_plural(here), source, here == 1 ? "s" : "", target, target, target);
+            here, text_plural(here), source, here == 1 ? "s" : "", target, text_word(target, target_word),
+            target_word + 1);
   if (*differing)
     fprintf(stderr,
             "clast: warning: %s: %" PRId64 " run%s that %s has too gave other results there; those of %s were kept. "
@@ -50,13 +53,13 @@ static status show_inputs(struct store *store, const char *target, struct error 
     TRY(scheduler_show_input(store, rows[i], error));
   if (count == 0)
     return STATUS_OK;
-  char numbers[ASK_CAMPAIGN_NUMBERS] = "";
+  char numbers[ASK_CAMPAIGN_NUMBERS] = "", word[TEXT_WORD];
   TRY(ask_campaign_namesakes(store, NULL, numbers, sizeof numbers, error));
   fprintf(
       stderr,
       "clast: warning: campaigns of one scene, or forms of one campaign, differ in %s: %s of %s from now on (--by). "
       "`clast stats %s --campaign %.*s` takes one campaign alone%s%s%s\n",
-      names, count == 1 ? "it is a varied input" : "they are varied inputs", target, target,
+      names, count == 1 ? "it is a varied input" : "they are varied inputs", target, text_word(target, word),
       *numbers ? (int)strcspn(numbers, ",") : (int)strlen("NAME"), *numbers ? numbers : "NAME",
       *numbers ? "; campaigns " : "", numbers, *numbers ? " have one name" : "");
   return STATUS_OK;

@@ -14,8 +14,10 @@ static status read_store(const char *path, int64_t campaign, char **name, char *
   STORE store = NULL;
   TRY(store_open_reader(path, &store, error));
   TRY(ask_campaign_document(store, campaign, name, document, error));
+  char word[TEXT_WORD];
   if (!*document)
-    return status_fail(error, STATUS_USAGE, "%s has no such campaign; `clast status %s` lists them", path, path);
+    return status_fail(error, STATUS_USAGE, "%s has no such campaign; `clast status %s` lists them", path,
+                       text_word(path, word));
   return ask_campaign_attempts(store, attempts, error);
 }
 

@@ -20,12 +20,14 @@ static status write_design(const struct command_line *line, struct error *error)
   const status code = sensitivity_design_write(line->arguments[0], line->arguments[1],
                                                morris ? DESIGN_SENSITIVITY_MORRIS : DESIGN_SENSITIVITY_SALTELLI,
                                                (size_t)options->blocks, (uint64_t)options->seed, error);
+  char word[TEXT_WORD];
+  (void)text_word(line->arguments[1], word);
   if (code == STATUS_OK)
     fprintf(
         stderr,
         "clast: wrote %s and its points beside it; `clast plan %s` tells what it costs, `clast run %s` fills a store "
         "of its own\n",
-        line->arguments[1], line->arguments[1], line->arguments[1]);
+        line->arguments[1], word + 1, word + 1);
   return code;
 }
 

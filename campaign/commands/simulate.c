@@ -26,9 +26,13 @@ static status simulate(const struct scene *scene, const char *reference, const s
     fprintf(stderr, "clast: %s\n", result.outcome.message);
   condition_tell(scene->kind->conditions, result.outcome.warnings,
                  condition_before(scene->kind->conditions, scene->inputs, NULL), "clast: warning: ", stderr);
-  if (options->snapshots && !options->quiet && table_for_people(format))
-    fprintf(stderr, "clast: `clast picture %s.hdf.series %s.gif` makes a movie of the snapshots, %s.png one picture\n",
-            scene->name, scene->name, scene->name);
+  if (options->snapshots && !options->quiet && table_for_people(format)) {
+    char series[LIMITS_PATH], movie[LIMITS_PATH], words[2][TEXT_WORD];
+    snprintf(series, sizeof series, "%s.hdf.series", scene->name);
+    snprintf(movie, sizeof movie, "%s.gif", scene->name);
+    fprintf(stderr, "clast: `clast picture %s %s` makes a movie of the snapshots, %s.png one picture\n",
+            text_word(series, words[0]), text_word(movie, words[1]), scene->name);
+  }
   return code;
 }
 

@@ -9,7 +9,7 @@ struct options {
 /* Exponents are fitted to all runs of a point together: they have no mean over runs. */
 static status check(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  char name[ASK_GROUP_NAME];
+  char name[ASK_GROUP_NAME], word[TEXT_WORD];
   for (const char *names = options->quantity ? options->quantity : ""; *names;) {
     enum exponent_method method;
     enum estimates_window window;
@@ -21,7 +21,7 @@ static status check(const struct command_line *line, struct error *error) {
           error, STATUS_USAGE,
           "%s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
           "`clast plot` and `clast map` draw them with -Q beta",
-          name, line->arguments[0]);
+          name, text_word(line->arguments[0], word));
   }
   return STATUS_OK;
 }
@@ -42,7 +42,7 @@ static status warn_of_twins(struct store *store, struct error *error) {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  char name[ASK_GROUP_NAME];
+  char name[ASK_GROUP_NAME], word[TEXT_WORD];
   const char *asked = options->quantity;
   TRY(ask_quantity_main(store, name, &asked, error));
   const char *quantity = strcmp(asked, "main") == 0 ? NULL : asked;
@@ -61,7 +61,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
         stderr, "",
         "clast: points share seeds: what a seed changes at all of them alike is not in the interval "
         "(`clast scatter %s --split` tells it, from two seeds on; `independent: true` gives each point its own)",
-        line->arguments[0]);
+        text_word(line->arguments[0], word));
   if (levels > 0)
     fprintf(stderr,
             "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "

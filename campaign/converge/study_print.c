@@ -499,11 +499,12 @@ status study_print(const struct study *study, enum table_format format, bool qui
   if (format == TABLE_ALL)
     words_print(stderr, "", "%s", legend_of_all);
   bool main = false;
+  char word[TEXT_WORD];
   for (size_t q = 0; q < study->quantity_count; q++)
     main |= strcmp(study->quantity[q].name, OUTCOME_DEFAULT) == 0;
   if (main)
     fprintf(stderr, "clast: next: `clast estimates %s --studies` has this error beside M_1/M of each level, and ",
-            study->limits.store);
+            text_word(study->limits.store, word));
   fprintf(stderr,
           main ? "`accuracy: {within: ...}` in a campaign chooses settings by it\n"
                : "clast: next: `accuracy: {quantity: %s, within: ...}` in a campaign chooses settings by it\n",

@@ -260,11 +260,12 @@ status campaign_load_changed(const char *path, const struct campaign_changes *ch
                        "input and its values",
                        path, path);
   TRY(code);
+  char word[TEXT_WORD];
   if (document_key(document_root(document), "engine") && !document_key(document_root(document), "scene"))
     return status_fail(error, STATUS_CONTENT,
                        "%s is a scene, not a campaign: a campaign is another file, with `name: NAME`, `scene: %s` and "
                        "what varies; `clast simulate %s` makes one run of the scene",
-                       path, path, path);
+                       path, path, text_word(path, word));
   const char *slash = strrchr(path, '/');
   OWNED char *folder = slash ? memory_small_text(path) : NULL;
   if (folder)

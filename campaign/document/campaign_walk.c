@@ -49,6 +49,7 @@ struct doubts {
   bool differ[CONDITION_MOST];      /* this number differs between the points */
   char worst[CONDITION_MOST][LINE]; /* the engine's text for it */
   struct kept kept[KEPT];
+  char partly[LINE]; /* the engine's remark about inputs that are given in part */
 };
 
 /* Is `other`, up to a comma, in the list? */
@@ -61,6 +62,8 @@ static bool has_other(const char *others, const char *other) {
 }
 
 static void add_kept(struct doubts *doubts, const struct scene *scene) {
+  if (!*doubts->partly && scene->kind->remark)
+    scene->kind->remark(scene->inputs, scene->given, doubts->partly, sizeof doubts->partly);
   for (struct scene_kept found = {0}; scene_next_kept(scene, &found);) {
     char value[FIELD_TEXT_SIZE], other[2 * FIELD_TEXT_SIZE];
     size_t k = 0;
@@ -125,6 +128,8 @@ static void print(const struct doubts *doubts, const char *before, bool counted,
 }
 
 static void print_kept(const struct doubts *doubts, const char *before, FILE *out) {
+  if (*doubts->partly)
+    print_line(doubts->partly, before, out);
   for (size_t k = 0; k < KEPT && doubts->kept[k].row; k++) {
     const struct kept *kept = &doubts->kept[k];
     char text[2 * LINE + 300] = "";
@@ -242,9 +247,9 @@ static void write_for_people(const struct field *row, const struct field_value *
 
 bool campaign_write_study(const struct scene *scene, const char *scene_reference, const char *quantities,
                           const char *store, char *text, size_t size) {
-  char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE];
+  char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE], word[TEXT_WORD];
   text[0] = '\0';
-  bool fits = text_append(text, size, "%s", scene_reference);
+  bool fits = text_append(text, size, "%s", text_word(scene_reference, word));
   for (size_t i = 0; i < scene->kind->inputs->count; i++) {
     const struct field *row = &scene->kind->inputs->rows[i];
     struct field_value given;

@@ -370,7 +370,7 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   const status code = launch_series(&launch, &series, true, error);
   if (!launch.manager || code != STATUS_OK)
     return code;
-  TRY(find_print(find, line->format, error));
+  TRY(find_print(find, line->format, launch.notes.quiet, error));
   return request->picture ? find_print_picture(find, request->picture, &request->chart, error) : STATUS_OK;
 }
 
@@ -409,7 +409,9 @@ static status follow_store(struct find *find, struct error *error) {
     if (!find->answered)
       choose_places(find);
     if (find->answered || find->each == 0) {
+      const struct crossing found = find->found;
       *find = last;
+      find->found = found;
       find->answered = true;
       return STATUS_OK;
     }
@@ -435,9 +437,10 @@ static status print_plan(struct find *find, const struct find_request *request, 
   if (!json) {
     printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
     if (find->answered)
-      puts(find->found.kind == CROSSING_FOUND || find->found.kind == CROSSING_OPEN
-               ? "The store has all of this search; a narrower interval or a larger --max-runs goes on."
-               : "The store has all of this search, and its answer: the same command without --plan prints it.");
+      printf("The store has all of this search (%zu runs)%s\n", find->runs + find->places * find->each,
+             find->found.kind == CROSSING_FOUND || find->found.kind == CROSSING_OPEN
+                 ? "; a narrower interval or a larger --max-runs goes on."
+                 : ", and its answer: the same command without --plan prints it.");
     else if (find->runs > 0)
       printf("The store has its first %zu runs; this is the cost of the others, near the crossing.\n", find->runs);
     else

@@ -70,8 +70,9 @@ status find_launch(const struct find_request *request, const struct command_line
 
 /* ---- find_print.c ---- */
 
-/* For people a sentence and a table of the runs along the input. For programs a row per crossing. */
-status find_print(const struct find *find, enum table_format format, struct error *error);
+/* For people a sentence and a table of the runs along the input. For programs a row per crossing. quiet: no remarks but
+ * on runs in doubt. */
+status find_print(const struct find *find, enum table_format format, bool quiet, struct error *error);
 status find_print_picture(const struct find *find, const char *path, const struct chart_options *chart,
                           struct error *error);
 /* A value of the input as people read it. */

@@ -10,6 +10,7 @@
 #include "schemas/unit.h"
 
 static const double LITTLE = 0.9; /* of a width, after twice the runs: 0.71 is usual */
+static const double APART = 0.2;  /* of the bracket; less than the first values are */
 enum { BINS = 10, SENTENCE = 2048 };
 
 static const char *show(const struct find *find, double x, char text[FIND_TEXT]) {
@@ -134,7 +135,9 @@ struct bin {
   struct sample_summary mean;
 };
 
-/* Pools the runs, in order of the input, into at most `BINS` + 1 bins of whole places. */
+/* Pools the runs, in order of the input, into bins of whole places. A bin has at least 1 / `BINS` of them, but places
+ * that are far apart are not pooled: a second crossing could be between them. So there are at most `BINS` + 1 bins and
+ * one for each such gap. */
 static status make_bins(const struct find *find, struct bin *bins, size_t *count, struct error *error) {
   OWNED double(*pairs)[3] = NULL;
   const struct sample_range range = sample_range(find->quantity.row);
@@ -153,7 +156,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
   for (size_t i = 0, from = 0; i < n; i++) {
     values[i - from] = pairs[i][1];
     const size_t in = i + 1 - from;
-    if (i + 1 < n && (in < n / BINS || pairs[i + 1][0] == pairs[i][0]))
+    if (i + 1 < n && (pairs[i + 1][0] == pairs[i][0] || (in < n / BINS && pairs[i + 1][0] - pairs[i][0] < APART)))
       continue;
     struct bin *bin = &bins[(*count)++];
     *bin = (struct bin){.low = pairs[from][0], .high = pairs[i][0], .n = in};
@@ -169,7 +172,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
   return STATUS_OK;
 }
 
-static status print_bins(const struct find *find, struct error *error) {
+static status print_bins(const struct find *find, bool quiet, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
   bool any_weak = false, holds = false;
@@ -197,6 +200,8 @@ static status print_bins(const struct find *find, struct error *error) {
   }
   TRY(table_end(table, error));
   fflush(stdout);
+  if (quiet)
+    return STATUS_OK;
   words_print(stderr, "",
               "clast: runs of neighbouring values are one row, from its least to its largest value, with the mean over "
               "them and its 95 %% interval%s",
@@ -344,7 +349,7 @@ static status tell_others(const struct find *find, struct error *error) {
   return STATUS_OK;
 }
 
-status find_print(const struct find *find, enum table_format format, struct error *error) {
+status find_print(const struct find *find, enum table_format format, bool quiet, struct error *error) {
   char text[SENTENCE];
   if (!table_for_people(format))
     return print_rows(find, format, error);
@@ -352,9 +357,11 @@ status find_print(const struct find *find, enum table_format format, struct erro
   words_print(stdout, "", "%s", text);
   if (!find->narrow)
     write_more(find);
-  TRY(print_bins(find, error));
+  TRY(print_bins(find, quiet, error));
   fflush(stdout);
   uncertainty_doubts(&find->doubts, stderr);
+  if (quiet)
+    return STATUS_OK;
   if (find->failed)
     fprintf(stderr, "clast: %zu of %zu runs have no such result and are left out\n", find->failed, find->runs);
   TRY(tell_others(find, error));

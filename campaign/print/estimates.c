@@ -239,13 +239,13 @@ static void print_legend(const struct printing *printing, FILE *out) {
     text_append(text, sizeof text,
                 ". Windows that begin at the same mass, where the spectrum is complete, have one row: the first");
   words_print(out, "", "%s.", text);
-  char main[ASK_GROUP_NAME], by[600] = "";
+  char main[ASK_GROUP_NAME], by[600] = "", word[TEXT_WORD];
   const char *quantity = NULL;
   if (ask_quantity_main(printing->store, main, &quantity, NULL) == STATUS_OK && strcmp(main, OUTCOME_DEFAULT) != 0) {
     for (size_t i = 0; i < printing->axes; i++)
       text_append(by, sizeof by, "%s%s", i ? "," : " --by ", printing->axis[i].name);
     fprintf(out, "clast: the main quantity of the campaign, %s, is no column here: `clast stats %s%s` has it\n", main,
-            store_path(printing->store), by);
+            text_word(store_path(printing->store), word), by);
     quantity_tell_resolution(printing->store, main, NULL);
   }
   quantity_tell_resolution(printing->store, OUTCOME_DEFAULT, NULL);

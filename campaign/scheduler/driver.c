@@ -455,13 +455,14 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
     return STATUS_OK;
   driver->first_done++;
   driver->first_failed += failed;
+  char word[TEXT_WORD];
   if (driver->campaign->failures == 0 || driver->first_failed < driver->campaign->failures)
     return STATUS_OK;
   return status_fail(error, STATUS_FAILED_RUNS,
                      "stopped: %lld of the first %lld runs failed. `clast query %s --named failures` says why. Correct "
                      "the campaign, or set limits.failures: 0 to ignore failures",
                      (long long)driver->first_failed, (long long)driver->first_done,
-                     driver->scheduler->options.store_path);
+                     text_word(driver->scheduler->options.store_path, word));
 }
 
 static status take_result(struct driver *driver, const struct scheduler_run *run, const struct scheduler_end *end,

@@ -340,7 +340,8 @@ status option_load_scene(const char *name, const struct option_list *set, struct
 }
 
 void option_words(const char *file, const struct option_list *set, const char *store, char *text, size_t size) {
-  snprintf(text, size, "%s", file);
+  char word[TEXT_WORD];
+  snprintf(text, size, "%s", text_word(file, word));
   for (size_t i = 0; i < set->count; i++) {
     text_append(text, size, " --set");
     text_append_word(text, size, set->items[i]);

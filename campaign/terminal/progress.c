@@ -151,7 +151,7 @@ void progress_note(struct progress *progress, const char *text) {
   if (progress->drawn)
     fputs("\r\033[K", progress->out);
   progress->drawn = false;
-  fprintf(progress->out, "%s\n", text);
+  fprintf(progress->out, "clast: %s\n", text);
   fflush(progress->out);
 }
 

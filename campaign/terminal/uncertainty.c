@@ -92,18 +92,20 @@ void uncertainty_cell(double value, double half_width, const struct sample_range
 }
 
 void uncertainty_excluded(int64_t count, const char *store) {
+  char word[TEXT_WORD];
   if (count > 0)
     fprintf(stderr, "clast: %" PRId64 " run%s excluded and left out (`clast exclude %s` lists %s)\n", count,
-            count == 1 ? " is" : "s are", store, count == 1 ? "it" : "them");
+            count == 1 ? " is" : "s are", text_word(store, word), count == 1 ? "it" : "them");
 }
 
 void uncertainty_missing(int64_t missing, int64_t wanted, const char *store) {
+  char word[TEXT_WORD];
   if (missing > 0)
     words_print(stderr, "",
                 "clast: %" PRId64 " of %" PRId64
                 " runs gave no result (`clast query %s --named failures`): if they fail "
                 "for a reason that depends on the result, means are biased",
-                missing, wanted, store);
+                missing, wanted, text_word(store, word));
 }
 
 void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path) {

@@ -58,7 +58,7 @@ static void wrap_piece(struct line *line, char *text, size_t size) {
   size_t after = 0; /* column behind it */
   for (char *at = text; at < text + size; at++) {
     if (*at == '\n' || *at == '\r') {
-      *line = (struct line){.located = line->located, .excerpt = line->excerpt};
+      *line = (struct line){.located = line->located, .excerpt = line->excerpt, .blank = line->blank};
       blank = NULL;
       continue;
     }

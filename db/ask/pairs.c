@@ -401,9 +401,11 @@ static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) 
 
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];
-  char apart[NAMED * (FIELD_TEXT_SIZE + 88)];
+  char apart[NAMED * (FIELD_TEXT_SIZE + 88)], point[2][TEXT_WORD], word[2][TEXT_WORD];
   if (pairs->found > 0)
     return STATUS_OK;
+  for (int k = 0; k < 2; k++)
+    snprintf(point[k], sizeof point[k], "%s:%lld", pairs->side[k].path, (long long)pairs->side[k].groups[0].point);
   write_apart(pairs, apart, sizeof apart);
   char advice[512] = "Name campaigns that vary the same (STORE:CAMPAIGN)";
   for (int k = 1; k >= 0; k--)
@@ -419,6 +421,6 @@ status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
              "this one of both",
              a->namesakes, a->path, b->namesakes, b->path);
   return status_fail(error, STATUS_USAGE,
-                     "no two points have the same varied inputs%s. %s, or two points: `clast compare %s:%lld %s:%lld`",
-                     apart, advice, a->path, (long long)a->groups[0].point, b->path, (long long)b->groups[0].point);
+                     "no two points have the same varied inputs%s. %s, or two points: `clast compare %s %s`", apart,
+                     advice, text_word(point[0], word[0]), text_word(point[1], word[1]));
 }

@@ -96,9 +96,10 @@ static status exclude(struct store *store, int64_t run_id, const char *reason, s
                        "there is no run %lld: the last run of %s is %lld (run_id in the view runs)", run, store->path,
                        (long long)last);
   TRY(sql_integerf(store->db, &surplus, error, "SELECT surplus FROM run WHERE run_id = %lld", run));
+  char word[TEXT_WORD];
   if (!reason && surplus < 2)
     return status_fail(error, STATUS_USAGE, "run %lld is not excluded; `clast exclude %s` lists those that are", run,
-                       store->path);
+                       text_word(store->path, word));
   OWNED char *counts = counts_of("surplus & 1 = 0");
   SQL_TEXT change = reason ? sql_format("surplus = surplus | 2, counts = 0, excluded = %Q, excluded_at = "
                                         "strftime('%%Y-%%m-%%dT%%H:%%M:%%SZ', 'now')",

@@ -18,6 +18,7 @@
 #include "schemas/file.h"
 #include "schemas/memory.h"
 
+#define ENDS_S  4.0  /* an opening for writing waits so long for another clast to end */
 #define ALONE_S 10.0 /* SQLite waits so long for another program where no function was given to store_on_wait() */
 #define TOLD_S  1.0
 
@@ -450,6 +451,13 @@ static status open_database(struct store *store, int flags, struct error *error)
   return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
 }
 
+/* Ranks live some 2 s longer than a killed mpirun: the same command, given at once, must not fail for that. */
+static void wait_for_writer(const char *path) {
+  const double begin = clock_s();
+  while (store_is_being_written(path) && clock_s() < begin + ENDS_S)
+    nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+}
+
 /* Refuses the store. The message names the lock's holder if its row is already written. */
 static status refuse_held(const char *path, struct error *error) {
   struct store *store = NULL;
@@ -464,8 +472,9 @@ static status refuse_held(const char *path, struct error *error) {
   store_close(store, NULL);
   return status_fail(
       error, STATUS_IO,
-      "%s: the store is being written by another clast%s. Wait until it ends, or stop it; or name another store.", path,
-      holder);
+      "%s: the store is being written by another clast%s. This one waited %g s for it. Wait until it ends, or "
+      "stop it; or name another store.",
+      path, holder, ENDS_S);
 }
 
 static status write_holder(struct store *store, struct error *error) {
@@ -546,6 +555,7 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
     return status_fail(error, STATUS_USAGE, "%s: %s", path, store_name_refused(path));
   TRY(file_input(path, error));
   TRY(check_file(path, error));
+  wait_for_writer(path);
   struct store *store = allocate(path);
   store->writer = true;
   struct stat file;

@@ -122,6 +122,7 @@ const struct engine_kind sph_engine = {
     .materials = &sph_materials,
     .complete = sph_inputs_complete,
     .check_given = sph_inputs_check_given,
+    .remark = sph_inputs_remark,
     .check = sph_inputs_check,
     .conditions = sph_conditions,
     .headline = headline,

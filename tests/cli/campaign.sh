@@ -223,6 +223,8 @@ same "$(axes followed.db)" grain.young_modulus "axes of campaigns of other grain
 expect 0 "$clast" merge chosen.db stiff.db brisk.db
 same "$(axes chosen.db)" fidelity.time_step "axes with a chosen step"
 # stores of several scenes: the scene is an axis; inputs that differ are shown as people write them
+expect 0 "$clast" merge 'all discs.db' strain2.db strain3.db
+says "\`clast stats 'all discs.db' --campaign NAME\`"
 expect 0 "$clast" merge scenes.db weibull8.db strain2.db strain3.db
 expect 0 "$clast" stats scenes.db --by scene --csv
 same "$(cut -d, -f1,4 out | tr '\n' ' ')" "scene,points basalt-sphere,1 disc-explosion,2 " "means by scene"
@@ -316,4 +318,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 91
+done_after 92

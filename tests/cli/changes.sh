@@ -77,6 +77,18 @@ with open("slow.db", "r+b") as held:
     open("err", "w").write(subprocess.run([sys.argv[1], "status", "slow.db"], capture_output=True, text=True).stderr)
 PY
 says "no sign of life for 12 min"
+# A writer that ends in a moment, such as the ranks of an mpirun that was killed, is waited for.
+cp tiny.db held.db
+python - "$clast" <<'PY'
+import fcntl, struct, subprocess, sys, time
+with open("held.db", "r+b") as held:
+    fcntl.fcntl(held, 37, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, 1 << 62, 1, 0))
+    merge = subprocess.Popen([sys.argv[1], "merge", "held.db", "killed.db"])
+    time.sleep(1)
+    assert merge.poll() is None, "it does not wait"
+assert merge.wait() == 0
+PY
+ok "a writer that ends is waited for"
 
 # one name for each quantity, and only columns of the engine
 columns=$(sqlite3 tiny.db "select count(*) from pragma_table_info('runs')")
@@ -100,4 +112,4 @@ expect 65 "$clast" explain windw
 says "did you mean window"
 sed -i 's|seeds: .*|seeds: {until: {quantity: energy_kinetic, half_width: 1e9 J/m}}|' tiny.yaml
 expect 0 "$clast" plan tiny.yaml --no-trial
-done_after 33
+done_after 34

@@ -28,6 +28,12 @@ expect 0 "$clast" find "${search[@]}" -j 1 --picture disc.png
 head -2 out | paste -sd ' ' | grep -qE '^The share of runs with largest_fraction above 0.5 rises through 0.5 at threshold.strain = [0-9.]+ %( !)? \(95 % interval [0-9.]+ % to [0-9.]+ %\)\.( |$)' ||
   fail "the first line is not the answer"
 ok "the first line answers"
+python - <<'PY' # places that are far apart have rows of their own: a second crossing could be between them
+import re
+rows = [tuple(map(float, row)) for row in re.findall(r'^ *([0-9.]+) % +([0-9.]+) % +[0-9]+ ', open('out').read(), re.M)]
+assert len(rows) > 4 and max(high - low for low, high in rows) < 1, rows
+PY
+ok "rows of near places"
 grep -oE '[0-9.]+ ± [0-9.]+' out | awk '$1 - $3 < 0 || $1 + $3 > 1 { exit 1 }' || fail "an interval of a share beyond 0 or 1"
 says "at most 400 runs"; says "resolution: not studied"; prints "share above 0.5"
 python - <<'PY' # the study is one of the crossing, in the units of the campaign
@@ -41,7 +47,7 @@ PY
 ok "the study advised is at the crossing"
 runs=$(number disc.db "select count(*) from run")
 expect 0 "$clast" find "${search[@]}" --plan
-prints "The store has all of this search"; prints "(0.0 s of processor time)"
+prints "The store has all of this search ($runs runs); a narrower interval"; prints "(0.0 s of processor time)"
 expect 0 "$clast" find disc.yaml --level 0.5 --share 50% --within 0.0001 --plan --json # the other runs: at the places near the crossing
 python - "$runs" <<'PY'
 import json, re, sqlite3, sys
@@ -120,6 +126,12 @@ assert row['kind'] == 'below' and row['narrow'] and row['at'] is row['low95'] is
 ok "no crossing for programs"
 expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6%
 prints "is above 0.5 for threshold.strain from 5 % to 6 %"
+# Then a narrower interval goes on with nothing. Behind --quiet are no remarks.
+expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6% --within "1 %" --plan
+prints " runs), and its answer: the same command without --plan prints it."
+expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6% --quiet
+grep -q 'one row\|resolution\|other runs\|level;' err && fail "remarks behind --quiet"
+says "marked (!)"
 # Of a whole number, the interval is one step. Mass grows with the columns, without noise.
 cat >block.yaml <<'YAML'
 name: block
@@ -170,4 +182,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 49
+done_after 52

@@ -181,4 +181,12 @@ prints "target.material.weibull.m: the scene gives 9"
 # Pores: the first message names all that they need.
 expect 65 "$clast" explain basalt-sphere --set "target.material.porosity.fraction=20 %"
 says "remove it, or set target.material.porosity.curve: quadratic and give target.material.porosity.elastic_pressure (Pa), target.material.porosity.solid_pressure (Pa)"
-done_after 64
+# Lines of many errors keep their blanks, wherever they are broken.
+for length in $(seq 30); do
+  rock=./$(printf "r%.0s" $(seq "$length")).yaml
+  printf 'density: 2.7 g/cm^3\ntillotson: {A: 40 GPa}\n' >"$rock"
+  "$clast" materials "$rock" >out 2>err && fail "a rock of two values"
+  grep -q 'error:[^ ]' err && fail "a blank is lost"
+done
+ok "blanks of wrapped errors"
+done_after 65

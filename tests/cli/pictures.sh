@@ -404,7 +404,7 @@ expect 0 "$clast" merge both.db small.db second.db
 expect 0 "$clast" plot both.db both.png -x strain
 says "from one to the next diameter of the body changes, too"
 expect 0 "$clast" map both.db both-map.png -x strain -y angle
-says "behind the marks: from one to the next diameter of the body changes, too"
+says "clast: from one to the next diameter of the body changes, too"
 expect 0 "$clast" stats both.db --by strain
 says "from row to row the value of body.diameter changes, too"
 expect 0 "$clast" stats both.db --by strain,diameter
@@ -414,4 +414,10 @@ grep -q "from row to row" err && fail "a change that is none"
 expect 66 "$clast" merge new.db small.db nosuch.db
 [ ! -e new.db ] || fail "a failed merge left a store behind"
 ok "two campaigns in one store"
-done_after 151
+# Words have no place on a map.
+tiny laws
+sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
+expect 0 "$clast" run laws.yaml -j 2 --quiet
+expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
+says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
+done_after 153

@@ -147,4 +147,9 @@ expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
 says "particles, not 3000"
-done_after $((48 + 3 * $(echo "$scenes" | wc -w)))
+# A box of which one side is given.
+printf 'engine: sph\nname: cube\ntarget: {shape: box, width: 5 cm, material: basalt}\nimpact: {projectile: mass, mass: 0.2 g, speed: 3 km/s}\n' >cube.yaml
+expect 0 "$clast" explain ./cube.yaml
+tr '\n' ' ' <out | grep -qF "of a box, target.width is given, and the other sides have their defaults: target.depth 0.2 m, target.height 0.2 m" ||
+  fail "the other sides are not told"
+done_after $((49 + 3 * $(echo "$scenes" | wc -w)))

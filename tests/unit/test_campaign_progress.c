@@ -117,6 +117,7 @@ static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
   progress_update(progress, &now, 2, false);
   progress_free(progress);
   fclose(out);
+  assert_non_null(strstr(text, "clast: a note\n"));
   int redraws = 0, widest = 0, width = 0, escape = 0;
   for (size_t i = 0; i < size; i++) {
     redraws += text[i] == '\r' && i + 4 < size && (unsigned char)text[i + 4] == 0x1B;

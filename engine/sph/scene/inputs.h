@@ -118,6 +118,7 @@ extern struct field_table sph_inputs; /* constant once main() begins */
 void sph_inputs_complete(void *inputs, const bool *given);
 /* inputs_check.c: values that a custom material must give. STATUS_CONTENT. */
 status sph_inputs_check_given(const void *inputs, const bool *given, struct error *error);
+void sph_inputs_remark(const void *inputs, const bool *given, char *text, size_t size);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
 status sph_inputs_check(const void *inputs, struct error *error);
 /* How to have fewer particles: "lower fidelity.particles". */

@@ -134,6 +134,32 @@ status sph_inputs_check_given(const void *scene, const bool *given, struct error
   return STATUS_OK;
 }
 
+/* Boxes of which some sides are given. A plate repeats along the others. */
+void sph_inputs_remark(const void *scene, const bool *given, char *text, size_t size) {
+  static const char *const sides[] = {"width", "depth", "height"};
+  const struct sph_inputs *in = scene;
+  text[0] = '\0';
+  for (int b = 0; b < 2 && in->kind != SPH_PISTON; b++) {
+    char has[100] = "", others[300] = "", path[FIELD_TEXT_SIZE], shown[FIELD_TEXT_SIZE];
+    for (size_t i = 0; i < 3; i++) {
+      struct field_value value;
+      snprintf(path, sizeof path, "%s.%s", b ? "projectile" : "target", sides[i]);
+      const struct field *row = field_find(&sph_inputs, path, NULL);
+      if (!field_is_active(&sph_inputs, row, in))
+        continue;
+      field_get(row, in, &value);
+      field_show(row, &value, shown, sizeof shown);
+      if (given[row - sph_inputs.rows])
+        text_append(has, sizeof has, "%s%s", *has ? " and " : "", path);
+      else
+        text_append(others, sizeof others, "%s%s %s", *others ? ", " : "", path, shown);
+    }
+    if (*has && *others)
+      text_append(text, size, "%sof a box, %s is given, and the other sides have their defaults: %s", *text ? "; " : "",
+                  has, others);
+  }
+}
+
 /* ---- sizes ---- */
 
 static status check_mesh(const char *name, const struct sph_body_inputs *body, const struct sph_shape *shape,
