@@ -757,13 +757,13 @@ status ask_run_excluded_count(struct store *store, int64_t *count, struct error 
 }
 
 status ask_run_missing(struct store *store, int64_t *missing, int64_t *wanted, struct error *error) {
-  ANSWER sum =
-      answer_to(store, error,
-                "SELECT total(missing), total(missing + runs) FROM (SELECT ifnull(t.runs, 0) AS runs, "
-                "ifnull(t.failed, 0) + " POINT_DIED(
-                    "main.") " AS missing FROM point p LEFT JOIN point_total "
-                             "t ON t.point_id = p.point_id AND t.results_version = (SELECT max(v.results_version) FROM "
-                             "point_total v WHERE v.point_id = p.point_id))");
+  ANSWER sum = answer_to(store, error,
+                         "SELECT total(missing), total(missing + runs) FROM (SELECT ifnull(t.runs, 0) AS runs, "
+                         "ifnull(t.failed, 0) + " POINT_DIED(
+                             POINT_RUNS_ARE_ALL) " AS missing FROM point p LEFT JOIN point_total "
+                                                 "t ON t.point_id = p.point_id AND t.results_version = (SELECT "
+                                                 "max(v.results_version) FROM "
+                                                 "point_total v WHERE v.point_id = p.point_id))");
   *missing = *wanted = 0;
   if (answer_next(&sum)) {
     *missing = (int64_t)answer_real(&sum, 0);

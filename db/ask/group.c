@@ -189,7 +189,7 @@ static void write_names(FILE *out, const struct names *names) {
 }
 
 /* A row for the runs of each point that died, in the columns that write_points() reads. Where the point has no run,
- * they are of its engine's newest results_version. */
+ * they are of its engine's newest results_version. LIMIT -1: SQLite counts them once, not for each use. */
 static void write_died(FILE *out, const struct names *axes, size_t quantities) {
   fputs(" UNION ALL SELECT ", out);
   for (size_t i = 0; i < axes->count; i++) {
@@ -200,11 +200,11 @@ static void write_died(FILE *out, const struct names *axes, size_t quantities) {
   }
   for (size_t i = 0; i < quantities; i++)
     fputs("NULL, NULL, ", out);
-  fputs("p.engine, (SELECT max(t.results_version) FROM point q JOIN point_total t USING (point_id) WHERE q.engine = "
-        "p.engine AND (q.point_id = p.point_id OR NOT EXISTS (SELECT 1 FROM point_total s WHERE s.point_id = "
-        "p.point_id))), p.point_id, 0, " POINT_DIED(
-            "main.") " AS died, '', 0, NULL, NULL FROM point p WHERE p.point_id "
-                     "IN (SELECT point_id FROM attempt) AND died > 0",
+  fputs("p.engine, ifnull((SELECT max(results_version) FROM point_total t WHERE t.point_id = p.point_id), newest), "
+        "p.point_id, 0, died, '', 0, NULL, NULL FROM (SELECT *, " POINT_DIED(
+            POINT_RUNS_ARE_ALL) " AS died FROM point p WHERE point_id IN (SELECT point_id FROM attempt) LIMIT -1) p "
+                                "LEFT JOIN (SELECT engine, max(results_version) AS newest FROM point JOIN point_total "
+                                "USING (point_id) GROUP BY engine) USING (engine) WHERE died > 0",
         out);
 }
 

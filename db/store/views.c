@@ -369,7 +369,7 @@ static void write_points(struct view *view) {
           "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored,\n  ifnull(t.failed, 0) + "
           "iif(t.results_version < (SELECT max(v.results_version) FROM point_total v WHERE v.point_id = p.point_id), "
           "0, %s) AS failed,\n",
-          view->stored ? POINT_DIED("") : POINT_DIED("main."));
+          view->stored ? POINT_DIED("1") : POINT_DIED(POINT_RUNS_ARE_ALL));
   fputs("  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM run r WHERE r.point_id = t.point_id AND "
         "r.results_version = t.results_version AND r.counts = 0 AND r.surplus > 1) AS excluded, (SELECT count(*) FROM "
         "attempt a WHERE a.point_id = p.point_id) AS failed_attempts,\n  (",

@@ -24,12 +24,15 @@
                                         "run AS x WHERE x.point_id = p.point_id))"
 
 /* SQL: how many runs of point p were tried, died (program, crash, limit) and have no result. An attempt that is `lost`
- * says nothing about its run. Not counted: runs beyond the prefix of a stopping rule, and those of a point of which a
- * condition has chosen some runs, as nobody knows whether they would meet it. */
-#define POINT_DIED(in_)                                                                                                \
-  "(SELECT count(DISTINCT a.seed) FROM attempt a WHERE a.point_id = p.point_id AND a.reason <> 'lost' AND NOT EXISTS " \
-  "(SELECT 1 FROM " in_ "run x WHERE x.point_id = p.point_id AND (x.seed = a.seed OR (x.surplus & 1 AND x.replicate "  \
-  "< a.replicate) OR NOT EXISTS (SELECT 1 FROM run c WHERE c.run_id = x.run_id))))"
+ * says nothing about its run. Not counted: runs after the last one that a stopping rule decided on. all: SQL that is
+ * false when a condition has chosen runs: nobody knows whether those that died would meet it. */
+#define POINT_DIED(all)                                                                                                \
+  "iif(" all " AND p.point_id IN (SELECT point_id FROM attempt), (SELECT count(*) FROM (SELECT a.seed FROM (SELECT "   \
+  "max(iif(x.surplus & 1, NULL, x.replicate)) AS last, max(x.surplus & 1) AS ruled FROM run x WHERE x.point_id = "     \
+  "p.point_id) CROSS JOIN attempt a WHERE a.point_id = p.point_id AND a.reason <> 'lost' AND (ruled IS NOT 1 OR "      \
+  "a.replicate <= last) EXCEPT SELECT x.seed FROM run x WHERE x.point_id = p.point_id)), 0)"
+/* For POINT_DIED(), of this connection's choice of runs (db/ask/choose.c). */
+#define POINT_RUNS_ARE_ALL "NOT EXISTS (SELECT 1 FROM temp.sqlite_schema WHERE name = 'chosen_run')"
 
 enum { VIEWS_COUNT = 5 };
 extern const char *const views_names[VIEWS_COUNT];

@@ -319,6 +319,8 @@ expect 0 "$clast" stats gone.db -Q x --by a --csv
 same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 6,0 3,3 3,3 " "runs of means"
 expect 0 "$clast" stats gone.db -Q x --where 'seed > 3' --by a --csv
 same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 3,0 2,1 2,0 " "runs that died are in no choice of runs"
+expect 0 "$clast" stats gone.db -Q x --where 'x > 0' --by a --csv # all runs of a: 9 that there are
+same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 6,0 3,0 3,0 " "runs that died, if all others are chosen"
 for command in "estimates gone.db" "stats gone.db -Q x" "scatter gone.db -Q x" "scatter gone.db -Q x --split" "sensitivity gone.db -Q x" \
   "plot gone.db gone.png -Q x" "report gone.db" "run gone-runs.yaml --quiet $word"; do
   "$clast" $command >out 2>err || [ "${command%% *}" = run ] || fail "$command"
@@ -431,4 +433,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 162
+done_after 164

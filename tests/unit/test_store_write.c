@@ -193,7 +193,7 @@ static void failed_and_censored_are_counted_apart(void **state) {
   int64_t point;
   OK(store_add_point(store, 0, &scene, 1, fixture_axes, &point, &error));
   for (int r = 0; r < 10; r++) {
-    fixture_fill(&f, &scene, point, 0, r, 4);
+    fixture_fill(&f, &scene, point, 0, r < 9 ? r : 10, 4);
     if (r == 3)
       f.outcome.state = OUTCOME_NOT_FINITE;
     if (r == 4 || r == 5)
@@ -232,6 +232,10 @@ static void failed_and_censored_are_counted_apart(void **state) {
   died.seed = 78;
   for (died.attempt = 1; died.attempt <= 2; died.attempt++)
     OK(store_add_attempt(store, &died, &error));
+  assert_near(number(store, "SELECT n = 8 AND failed = 2 FROM points"), 1, 0);
+  died.seed = 79;
+  died.replicate = 9; /* the first one beyond the prefix */
+  OK(store_add_attempt(store, &died, &error));
   assert_near(number(store, "SELECT n = 8 AND failed = 2 FROM points"), 1, 0);
   const struct store_attempt silent = {.point_id = point, .replicate = 21, .identity = {8}, .attempt = 1};
   OK(store_add_attempt(store, &silent, &error));
