@@ -45,7 +45,8 @@ static const struct knob knobs[] = {
                     {"fidelity.fine_radius", 0}},
          KNOB_THIRDS, .step_power = -1.0 / 3, .tell_unkept = sph_derived_tell_unkept,
          .meaning = "number of particles of the target; the projectile's spacing follows. Where spacings_per_radius "
-                    "decides the spacing at the point of impact, this and the projectile's stay"),
+                    "decides the spacing at the point of impact, this and the projectile's stay, if there are enough "
+                    "particles"),
     KNOB("impact_zone", RESOLUTION,
          .inputs = {{"fidelity.spacings_per_radius", 1},
                     {"fidelity.particles", 3, .at_least = true},

@@ -135,6 +135,8 @@ ok "a face that is not level"
 # A cube that turns about z moves matter along that normal.
 spin() { expect 0 "$clast" simulate ./scenes/tilted.yaml --set method.gradient_correction=true --set stop.end_time='5 us' \
   --set impact.gap='0.1 mm' --set target.spin="$1"; }
+expect 0 "$clast" explain basalt-sphere --set target.spin='1000 rad/s' --set method.gradient_correction=true
+! grep -q "tilt" out err || fail "a sphere that turns has a mark of a tilted face"
 spin '1000 rad/s' # 30 m/s at an edge, of which sin(0.4) is along the normal
 says "warning: tilt: the speed at which the target's rotation moves its surface"
 spin '800 rad/s'
@@ -170,4 +172,4 @@ says "have changed since it was stored"
 expect 65 "$clast" check damaged.db
 prints "have changed since it was stored"
 
-done_after 34
+done_after 35

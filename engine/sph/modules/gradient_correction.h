@@ -264,7 +264,8 @@ static const struct sph_column_need gradient_correction_columns[] = {{SPH_COLUMN
 static const struct sph_module gradient_correction_module = {
     .name = "gradient_correction",
     .doc = "Velocity gradients are exact for linear fields, also at surfaces, and forces are conjugate to them: a "
-           "rigid rotation strains nothing, energy and angular momentum keep, free sides are as stiff as the inside.",
+           "rigid rotation strains nothing (sharp edges: with a target.spin only), energy and angular momentum keep, "
+           "free sides are as stiff as the inside.",
     .source = "Randles & Libersky 1996; Bonet & Lok 1999 (Comput. Methods Appl. Mech. Eng. 180, 97)",
     .when = "gradient_correction: true",
     .on = gradient_correction_on,

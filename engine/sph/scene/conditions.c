@@ -138,12 +138,11 @@ static double cells(const void *inputs) {
              : (double)NAN;
 }
 
-/* Width of the cells over the coarsest spacing of the target. */
+/* Width of the cells over the spacing of the target as a whole. */
 static double narrow(const void *inputs) {
   const struct sph_inputs *in = inputs;
-  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in)
-             ? in->crack_cell.width / sph_derived_coarsest_spacing(in)
-             : (double)NAN;
+  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in) ? in->crack_cell.width / whole_spacing(in)
+                                                                  : (double)NAN;
 }
 
 /* The larger of both viscosities over the largest usual one. With reconstruction a smooth flow feels none of it. */
@@ -464,12 +463,14 @@ static double spun(const void *inputs) {
 }
 
 /* The largest speed along the normal that the rotation gives to the target's surface, over crater.ejection_speed. Only
- * a mesh can have a face of impact across which the axis of rotation (z) is not the normal. */
+ * a mesh can have a face of impact across which the axis of rotation (z) is not the normal: else NaN. */
 static double tilt(const void *inputs) {
   const struct sph_inputs *in = inputs;
   const struct sph_shape target = sph_derived_target(in);
   double point[3], frame[3][3];
   if (!(in->target.spin != 0) || !sph_bodies_face(&target, (const double[]){0, 0, 1}, point, frame))
+    return NAN;
+  if (frame[2][0] == 0 && frame[2][1] == 0)
     return NAN;
   const double one[3] = {frame[2][1], -frame[2][0], 0}, other[3] = {-one[0], -one[1], 0};
   const double speed = fabs(in->target.spin) * fmax(sph_shape_reach(&target, one), sph_shape_reach(&target, other));

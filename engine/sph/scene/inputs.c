@@ -122,7 +122,9 @@ static const struct field rows[] = {
 
     BODY(target, .nest = &outline),
     REAL(target.spin, "rad/s", 0, -1e9, 1e9, .when = "kind=impact",
-         .doc = "The target turns about z before it is hit."),
+         .doc =
+             "The target turns about z before it is hit. Any value but 0 also keeps rotations at sharp edges free of "
+             "strain (method.gradient_correction); without spin the bits of earlier versions stay."),
     CHOICE(sides.far, far_sides, .when = "target.shape=box",
            .choice_docs = "free surfaces: waves return\na layer inside all sides but the upper one damps motion: it "
                           "stands for a half-space",
