@@ -349,23 +349,30 @@ static void findings_replace_earlier_ones(void **state) {
   scene_free(scene);
 }
 
-/* Adds the knob's remaining error at the point, which is the scene studied (`base` 0) or a level of it. */
-static void level_of(struct store *store, int64_t base, int64_t point, const char *knob, double resolution, bool open,
-                     enum limit_verdict verdict) {
-  struct convergence_row row;
+/* Adds a level of a knob, which is the scene studied (`base` 0) or another point. */
+static void add_level(struct store *store, int64_t base, int64_t point, const char *knob,
+                      const struct convergence_row *level, enum limit_verdict verdict) {
+  struct convergence_row row = *level;
   struct convergence_limit_row limit;
-  field_defaults(&convergence_table, &row);
   field_defaults(&convergence_limit_table, &limit);
   snprintf(row.knob, sizeof row.knob, "%s", knob);
   snprintf(limit.knob, sizeof limit.knob, "%s", knob);
   strcpy(row.quantity, "largest_fraction");
   strcpy(limit.quantity, "largest_fraction");
-  row.resolution = resolution;
-  row.open = open;
   row.base = base == 0;
   limit.verdict = verdict;
   const struct store_convergence study = {base ? base : point, fixture_kind.results_version, 1, &point, &row, &limit};
   assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+}
+
+/* The same by its remaining error. */
+static void level_of(struct store *store, int64_t base, int64_t point, const char *knob, double resolution, bool open,
+                     enum limit_verdict verdict) {
+  struct convergence_row row;
+  field_defaults(&convergence_table, &row);
+  row.resolution = resolution;
+  row.open = open;
+  add_level(store, base, point, knob, &row, verdict);
 }
 
 static void studied(struct store *store, int64_t point, const char *knob, double resolution, bool open,
@@ -448,6 +455,39 @@ static void a_level_has_the_errors_of_the_other_knobs(void **state) {
   assert_int_equal(store_close(store, &error), STATUS_OK);
 }
 
+/* The error of a knob that has two studies: of the scene itself, 0.05 with a step of 1 and 8 seeds, and of the scene
+ * with another time step, which leaves 0.01. */
+static double error_of_two(struct store *store, int64_t point, double resolution, double step, int64_t seeds) {
+  struct convergence_row row;
+  struct ask_resolution found;
+  field_defaults(&convergence_table, &row);
+  row.resolution = 0.05, row.step = 1, row.n = 8;
+  add_level(store, 0, point, "grains", &row, LIMIT_SEEN);
+  row.resolution = resolution, row.step = step, row.n = seeds;
+  add_level(store, 0, point + 1, "grains", &row, LIMIT_SEEN);
+  level_of(store, point + 1, point, "time_step", 0.01, false, LIMIT_SEEN);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  return found.half_width - 0.01;
+}
+
+/* A finer study tells more than the one before it, also if that had a larger error; one as fine only with more seeds.
+ */
+static void a_finer_study_replaces_a_coarser_one(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  assert_int_equal(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
+  const int64_t point = integer(store, "SELECT min(point_id) FROM run");
+  assert_true(fabs(error_of_two(store, point, 0.02, 0.5, 8) - 0.02) < 1e-12);
+  assert_true(fabs(error_of_two(store, point, 0.07, 0.5, 8) - 0.07) < 1e-12);
+  assert_true(fabs(error_of_two(store, point, 0.02, 1, 16) - 0.02) < 1e-12);
+  assert_true(fabs(error_of_two(store, point, 0.02, 1, 8) - 0.05) < 1e-12);
+  assert_true(fabs(error_of_two(store, point, 0.07, 1, 8) - 0.07) < 1e-12);
+  assert_true(fabs(error_of_two(store, point, 0.07, 2, 32) - 0.05) < 1e-12); /* coarser */
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+}
+
 /* The reference if it was run, else the finest level that was. */
 static void reference_of_a_ladder(void **state) {
   (void)state;
@@ -475,6 +515,7 @@ int main(void) {
                                      cmocka_unit_test(settings_of_another_model_are_no_levels),
                                      cmocka_unit_test(findings_replace_earlier_ones),
                                      cmocka_unit_test(a_point_has_the_errors_of_its_knobs),
-                                     cmocka_unit_test(a_level_has_the_errors_of_the_other_knobs)};
+                                     cmocka_unit_test(a_level_has_the_errors_of_the_other_knobs),
+                                     cmocka_unit_test(a_finer_study_replaces_a_coarser_one)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
