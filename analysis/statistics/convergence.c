@@ -99,13 +99,16 @@ static void resolve(struct convergence_row *level, const struct limit_range *dis
   level->resolution = fmax(fabs(distance->low), fabs(distance->high));
 }
 
-void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law,
-                         const size_t *place) {
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
+                         bool choices) {
+  bool moves = false; /* do levels differ? */
+  for (size_t l = 0; l < count; l++)
+    moves |= levels[l].n > 0 && fabs(levels[l].bias) + levels[l].bias_half_width > 0;
   double coarser = NOTHING; /* |bias| and half width of the last level before the reference */
   for (size_t l = 0; l < count; l++) {
     struct convergence_row *level = &levels[l];
-    const bool stepped = !isnan(level->step);
-    level->open = (stepped && law->verdict != LIMIT_SEEN) || law->verdict == LIMIT_CONSTANT;
+    const bool endless = !isnan(level->step) || (moves && !choices);
+    level->open = (endless && law->verdict != LIMIT_SEEN) || law->verdict == LIMIT_CONSTANT;
     if (law->verdict == LIMIT_SEEN && place[l] < LIMIT_LEVELS)
       resolve(level, &law->distance[place[l]]);
     else if (law->verdict == LIMIT_CONSTANT)
@@ -113,7 +116,7 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
     else if (!level->reference)
       level->resolution = fabs(level->bias) + level->bias_half_width;
     else
-      level->resolution = stepped ? coarser : 0;
+      level->resolution = endless ? coarser : 0;
     if (!level->reference && isfinite(level->bias_half_width))
       coarser = fabs(level->bias) + level->bias_half_width;
   }

@@ -164,7 +164,7 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", column);
   study_law(study, ladder, quantity, &law, place, own.step > 0, &own);
   convergence_limit_fill(&law, &found->limit);
-  convergence_resolve(found->count, found->rows, &law, place);
+  convergence_resolve(found->count, found->rows, &law, place, ladder->levels.knob->choices[0]);
   convergence_resolve_own(found->count, found->rows, &law, place, &own);
   for (size_t l = 0; l < found->count && !found->adds; l++) {
     struct convergence_row *row = &found->rows[l];

@@ -69,7 +69,7 @@ static void resolutions(void **state) {
                                      {.step = 1, .mean = 0.6, .reference = true}};
   static const size_t place[3] = {LIMIT_LEVELS, 0, 1}; /* the coarsest has no run */
   struct limit_law law = {.verdict = LIMIT_SEEN, .distance = {{-0.14, -0.2, -0.1}, {-0.1, -0.15, 0.05}}};
-  convergence_resolve(3, level, &law, place);
+  convergence_resolve(3, level, &law, place, true);
   NEAR(level[0].resolution, 0.12, 1e-12);
   NEAR(level[1].distance, -0.15, 1e-12);
   NEAR(level[1].distance_half_width, 0.05, 1e-12);
@@ -78,7 +78,7 @@ static void resolutions(void **state) {
   assert_false(level[0].open);
 
   law.verdict = LIMIT_NOT_SEEN;
-  convergence_resolve(3, level, &law, place);
+  convergence_resolve(3, level, &law, place, true);
   NEAR(level[0].resolution, 0.12, 1e-12);
   NEAR(level[2].resolution, 0.05, 1e-12); /* as far as the next coarser level at least */
   assert_true(level[0].open && level[2].open);
@@ -86,14 +86,22 @@ static void resolutions(void **state) {
   /* Equal runs: no difference, which is no bound. A level without runs tells nothing. */
   law.verdict = LIMIT_CONSTANT;
   level[1].n = level[2].n = 3;
-  convergence_resolve(3, level, &law, place);
+  convergence_resolve(3, level, &law, place, true);
   assert_true(isnan(level[0].resolution));
   assert_true(level[1].resolution == 0 && level[1].open && level[2].resolution == 0 && level[2].open);
 
   /* Exact is exact: a choice has no step. */
   level[0].step = level[1].step = level[2].step = NAN;
   law.verdict = LIMIT_TOO_FEW;
-  convergence_resolve(3, level, &law, place);
+  convergence_resolve(3, level, &law, place, true);
+  assert_true(level[2].resolution == 0 && !level[2].open);
+
+  /* Numbers without a step, such as how long to wait for a break, have no end: no bound, unless all runs are equal. */
+  convergence_resolve(3, level, &law, place, false);
+  NEAR(level[2].resolution, 0.05, 1e-12);
+  assert_true(level[1].open && level[2].open);
+  level[1].bias = level[1].bias_half_width = 0;
+  convergence_resolve(3, level, &law, place, false);
   assert_true(level[2].resolution == 0 && !level[2].open);
 }
 

@@ -184,7 +184,7 @@ static void of_ladders(void) {
           rows[l].bias_half_width = bias.half_width;
           rows[l].reference = l == LEVELS - 1;
         }
-        convergence_resolve(LEVELS, rows, &law, place);
+        convergence_resolve(LEVELS, rows, &law, place, true);
         for (size_t l = 0; l < LEVELS; l++)
           SAY("level", rows[l].distance, rows[l].distance_half_width, rows[l].resolution, rows[l].open);
         struct convergence_limit_row row = {0};
