@@ -42,6 +42,7 @@ struct finding {
   struct store *store;
   const struct scene *scene; /* the one that was studied */
   int64_t point;             /* its point in the store */
+  int64_t last_point;        /* the last such point that the store has */
   const struct field *row;   /* of the quantity; NULL: an exponent */
   char results[ASK_DOUBTS_RESULTS];
   double beyond; /* sum over knobs without a limit: what a law of the least order leaves beyond the finest level, by the
@@ -80,6 +81,17 @@ static bool is_varied(const struct campaign *campaign, const struct knob *knob, 
     if (campaign_axis(campaign, campaign->scene->kind->inputs->rows[settings->item[i].row].path))
       return true;
   return false;
+}
+
+/* Numbers without a step are finer where they are larger. */
+static double step_of(const struct knob *knob, const struct convergence_row *row) {
+  const bool number = knob && knob->factors[0] > 0;
+  return isnan(row->step) && number ? 1 / strtod(row->setting, NULL) : row->step;
+}
+
+/* The next finer level of a knob of numbers, over a level. */
+static double finer_by(const struct knob *knob) {
+  return knob->step_power > 0 ? 0.5 : 2;
 }
 
 /* What a law of the least order leaves at the finest level, by its changes from at least two coarser ones. NaN: not
@@ -180,7 +192,7 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->accuracy->widest_value = strtod(row->setting, NULL);
   }
   if (resolution && row->open && row->reference)
-    finding->beyond += left_beyond(finding, row->step);
+    finding->beyond += left_beyond(finding, step_of(knob, row));
   if (resolution && row->open && row->base && row->n == 0) /* no law reaches the scene's own level */
     finding->beyond = NAN;
   if (resolution)
@@ -189,7 +201,7 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     note_level(finding, knob, row);
   if (row->n > 0 && finding->levels < KNOB_LEVELS) {
     snprintf(finding->ran, sizeof finding->ran, "%.63s", row->knob);
-    finding->step[finding->levels] = row->step;
+    finding->step[finding->levels] = step_of(knob, row);
     finding->change[finding->levels++] = fabs(row->bias) + row->bias_half_width;
   }
   const bool left_out = row->n == 0 && !row->base && isnan(row->resolution) && ran; /* finer than a level that ran */
@@ -454,6 +466,7 @@ static status read_study(struct finding *finding, struct store *store, const str
   TRY(store_point_find(store, scene, &point, error));
   finding->row = quantity.row;
   finding->point = point;
+  finding->last_point = point ? point : finding->last_point;
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
@@ -562,6 +575,28 @@ static status no_study(const struct campaign *campaign, const char *path, const 
                      path, campaign->accuracy_quantity);
 }
 
+/* No setting has a result. Where runs at the scene's own settings are withheld, a study would be, too: says why. */
+static status no_result(const struct finding *finding, const char *path, const char *store, struct error *error) {
+  struct ask_doubts doubts = {0};
+  char why[1200] = "";
+  const char *quantity = finding->campaign->accuracy_quantity;
+  if (finding->last_point)
+    TRY(ask_doubts(finding->store, &(struct ask_doubts_choice){.point = finding->last_point}, finding->results, &doubts,
+                   error));
+  if (doubts.withheld == 0)
+    return no_study(finding->campaign, path, store, error);
+  for (size_t k = 0; k < doubts.count; k++) {
+    const struct condition *row = doubts.word[k].row;
+    if (row && row->withheld)
+      text_append(why, sizeof why, ". %s: %s (`clast explain %s`)", row->word, row->remedy ? row->remedy : row->doubt,
+                  row->word);
+  }
+  return status_fail(error, STATUS_CONTENT,
+                     "accuracy: %s has no %s for this campaign: with its own settings, %" PRId64 " of %" PRId64
+                     " runs are withheld%s. Then study it: `clast converge %s --quantity %s`",
+                     store, quantity, doubts.withheld, doubts.runs, why, path, quantity);
+}
+
 status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,
                      struct accuracy *accuracy, struct error *error) {
   struct finding finding = {.campaign = campaign, .accuracy = accuracy};
@@ -575,7 +610,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
   TRY(read_study(&finding, store, campaign->scene, error));
   TRY(read_points(&finding, store, error));
   if (accuracy->count == 0)
-    return no_study(campaign, path, store_path, error);
+    return no_result(&finding, path, store_path, error);
   choose(accuracy);
   return name_widest(&finding, store, error);
 }
@@ -606,7 +641,7 @@ static const struct accuracy_option *finest_open(const struct accuracy *accuracy
     const struct accuracy_option *option = &accuracy->options[i];
     const double finer = finest ? strtod(option->setting, NULL) / strtod(finest->setting, NULL) : 1;
     if (strcmp(option->knob, accuracy->open->name) == 0 && !option->own &&
-        (!finest || (accuracy->open->step_power < 0 ? finer > 1 : finer < 1)))
+        (!finest || (finer_by(accuracy->open) > 1 ? finer > 1 : finer < 1)))
       finest = option;
   }
   return finest;
@@ -630,7 +665,7 @@ static void append_without(const char *words, const char *remedy, char *text, si
  * that would be marked are studied with another input of a shorter step. */
 static void append_study(const struct accuracy *accuracy, const struct campaign *campaign, const struct knob *knob,
                          double value, int64_t seeds, char *next, size_t size) {
-  const double finer = knob->step_power < 0 ? 2 : 0.5;
+  const double finer = finer_by(knob);
   char own[64];
   ladder_setting(knob, campaign->scene, own, sizeof own);
   const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
@@ -663,7 +698,7 @@ static void append_study(const struct accuracy *accuracy, const struct campaign 
 static void advise_levels(const struct accuracy *accuracy, const struct campaign *campaign,
                           const struct accuracy_option *finest, char *next, size_t size) {
   const struct knob *knob = accuracy->open;
-  const double finer = knob->step_power < 0 ? 2 : 0.5;
+  const double finer = finer_by(knob);
   const double value = accuracy->open_value > 0 ? accuracy->open_value : strtod(finest->setting, NULL);
   const char *unit = unit_of(campaign, knob);
   char setting[64], time[32];

@@ -302,8 +302,40 @@ static void print_seen(const struct convergence_limit_row *limit, const struct s
               study_show_error(found->rows[l].resolution, found->rows[l].open, text));
 }
 
+/* The levels without a mean, each with its reason: not run in the time given, or all results withheld or missing. */
+static status print_missing(const struct printing *printing, const struct study_ladder *ladder, size_t quantity,
+                            const struct study_found *found, FILE *out, struct error *error) {
+  struct ask_doubts here, all = {0};
+  char ran[KNOB_LEVELS * 200] = "", words[256] = "";
+  const char *before = "; without";
+  for (size_t l = 0; l < found->count; l++) {
+    const struct convergence_row *row = &found->rows[l];
+    const bool by_law = row->base && !row->open && found->limit.verdict == LIMIT_SEEN;
+    const char *own = by_law ? " *, whose error follows from the law" : row->base ? " *" : "";
+    if (row->n > 0)
+      continue;
+    TRY(read_doubts(printing, ladder, l, quantity, &here, error));
+    if (here.runs > 0 && !ladder->left_out[l]) {
+      text_append(ran, sizeof ran, "%s %s%s", *ran ? "," : "", row->setting, own);
+      ask_doubts_add(&all, &here);
+      continue;
+    }
+    fprintf(out, "%s %s%s", before, row->setting, own);
+    before = ",";
+  }
+  for (size_t k = 0; k < all.count; k++)
+    if (all.word[k].row && all.word[k].row->withheld)
+      text_append(words, sizeof words, "%s%s", *words ? ", " : "", all.word[k].word);
+  if (*ran && *words)
+    fprintf(out, "; run, but results are withheld (%s):%s", words, ran);
+  else if (*ran)
+    fprintf(out, "; run, but without a usable result:%s", ran);
+  return STATUS_OK;
+}
+
 /* The law of a knob, which levels it leaves out and why, and why the knob has no more runs. */
-static void print_limit(const struct study_ladder *ladder, const struct study_found *found, FILE *out) {
+static status print_limit(const struct printing *printing, const struct study_ladder *ladder, size_t quantity,
+                          const struct study_found *found, FILE *out, struct error *error) {
   const struct convergence_limit_row *limit = &found->limit;
   const struct knob *knob = ladder->levels.knob;
   const char *before = "";
@@ -321,6 +353,8 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
     fprintf(out, "no difference seen, all runs are equal; ");
   else if (!isnan(found->rows[0].step))
     fprintf(out, "no limit inferred, which needs three levels and three seeds; ");
+  else if (has_runs(found) && found->rows[0].open)
+    fprintf(out, "no law says how far it is from a limit; ");
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
   for (size_t l = 0; l < found->count && dropped > 0; l++)
     if (found->rows[l].n > 0) {
@@ -332,16 +366,9 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
     fprintf(out, ", as it fits all finer levels (%.2g) and not with the next one (%.2g); ", limit->fit,
             limit->fit_with);
   fprintf(out, "ended: %s", ladder->end);
-  before = "; without";
-  for (size_t l = 0; l < found->count; l++)
-    if (found->rows[l].n == 0) {
-      fprintf(out, "%s %s%s", before, found->rows[l].setting,
-              !found->rows[l].base                                  ? ""
-              : found->rows[l].open || limit->verdict != LIMIT_SEEN ? " *"
-                                                                    : " *, whose error follows from the law");
-      before = ",";
-    }
+  TRY(print_missing(printing, ladder, quantity, found, out, error));
   fputc('\n', out);
+  return STATUS_OK;
 }
 
 /* Prints whether a cheaper level would save runs of a finer one. Levels that do not differ from the reference are
@@ -373,36 +400,13 @@ static void print_gain(size_t count, const struct study_found *found, FILE *out)
             best->knob, best->setting, best->gain, most);
 }
 
-static status print_quantity(struct printing *printing, size_t from, size_t quantity, size_t count,
-                             const struct study_found *found, struct error *error) {
+/* The table of a quantity. */
+static status print_levels(struct printing *printing, size_t from, size_t quantity, size_t count,
+                           const struct study_found *found, struct error *error) {
   const struct study *study = printing->study;
-  const struct study_quantity *what = &study->quantity[quantity];
-  const struct scene *base = study->ladder[from].base;
-  const char *unit = what->row ? what->row->unit : NULL;
-  if (unit && strcmp(unit, "kg") == 0)
-    unit = ask_pool_mass_unit(base->kind->dimensions);
-  const bool named = unit && strcmp(unit, "1") != 0;
-  bool ran = false;
-  for (size_t i = 0; i < count; i++)
-    ran |= has_runs(&found[i]);
-  if (from || quantity)
-    putchar('\n');
-  OWNED char *sentences = NULL;
-  FILE *out = text_open(&sentences);
-  print_sentence(study, from, quantity, count, found, out);
-  text_close_small(out, &sentences);
-  text_wrap_lines(sentences, WIDTH, stdout);
-  char point[512];
-  design_axis_show_point(study->varied_count, study->varied, base->inputs, point, sizeof point);
-  if (!ran)
-    words_print(stdout, "", "%s%s%s: nothing was run in the time given", base->name, *point ? ", " : "", point);
-  if (!ran)
-    return STATUS_OK;
-  words_print(stdout, "", "%s%s%s, quantity %s%s%s%s", base->name, *point ? ", " : "", point, what->name,
-              named ? " (" : "", named ? unit : "", named ? ")" : "");
   TABLE table = table_new(printing->format, stdout);
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", NULL});
-  table_range(table, views_range(what->name));
+  table_range(table, views_range(study->quantity[quantity].name));
   table_columns(table, (const char *const[]){"bias", "bias_hw95", "error", "cpu_s", "frontier", "sd", NULL});
   static const char *const rare[] = {"skewness",        "share of upper mode", "correlation",
                                      "correlation low", "correlation high",    "pays from correlation"};
@@ -419,16 +423,54 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   TRY(table_end(table, error));
   for (size_t k = 0; k < LEGEND; k++)
     printing->hidden[k] = legend[k].column && table_hides(table, legend[k].column);
+  return STATUS_OK;
+}
+
+static status print_quantity(struct printing *printing, size_t from, size_t quantity, size_t count,
+                             const struct study_found *found, struct error *error) {
+  const struct study *study = printing->study;
+  const struct study_quantity *what = &study->quantity[quantity];
+  const struct scene *base = study->ladder[from].base;
+  const char *unit = what->row ? what->row->unit : NULL;
+  if (unit && strcmp(unit, "kg") == 0)
+    unit = ask_pool_mass_unit(base->kind->dimensions);
+  const bool named = unit && strcmp(unit, "1") != 0;
+  bool ran = false, any = false; /* with and without a result */
+  for (size_t i = 0; i < count; i++) {
+    ran |= has_runs(&found[i]);
+    for (size_t l = 0; l < found[i].count; l++)
+      any |= isfinite(study->ladder[from + i].wall[l]);
+  }
+  if (from || quantity)
+    putchar('\n');
+  OWNED char *sentences = NULL;
+  FILE *out = text_open(&sentences);
+  print_sentence(study, from, quantity, count, found, out);
+  text_close_small(out, &sentences);
+  text_wrap_lines(sentences, WIDTH, stdout);
+  char point[512];
+  design_axis_show_point(study->varied_count, study->varied, base->inputs, point, sizeof point);
+  if (!ran)
+    words_print(stdout, "", "%s%s%s: %s", base->name, *point ? ", " : "", point,
+                any ? "no level has a result" : "nothing was run in the time given");
+  if (!any)
+    return STATUS_OK;
+  if (ran)
+    words_print(stdout, "", "%s%s%s, quantity %s%s%s%s", base->name, *point ? ", " : "", point, what->name,
+                named ? " (" : "", named ? unit : "", named ? ")" : "");
+  if (ran)
+    TRY(print_levels(printing, from, quantity, count, found, error));
   free(sentences);
   sentences = NULL;
   out = text_open(&sentences);
-  for (size_t i = 0; i < count; i++)
-    print_limit(&study->ladder[from + i], &found[i], out);
+  status code = STATUS_OK;
+  for (size_t i = 0; i < count && code == STATUS_OK; i++)
+    code = print_limit(printing, &study->ladder[from + i], quantity, &found[i], out, error);
   if (printing->format == TABLE_ALL)
     print_gain(count, found, out);
   text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
-  return STATUS_OK;
+  return code;
 }
 
 enum { OF_LIMIT = 2 }; /* the columns of a limit after knob and quantity, which a level has too */

@@ -592,6 +592,25 @@ for grains, whole, most in rows:
     assert abs(min(grains + step, most) - whole) < 1e-12, (grains, step, whole, most)
 PY
 ok "errors of the knobs of two studies"
+# A knob of numbers without a law has no bound on any screen: a run that waits longer breaks more.
+expect 0 "$clast" converge steps.yaml --knob stop,integrator -Q dust_fraction --seeds 4 --within off --store stop.db -j 2
+prints "stop: no law says how far it is from a limit"
+grep -Eq '^stop +[0-9.e-]+ s ref .* >= ' out || fail "the finest level of stop has a bound: $(cat out)"
+same "$(number stop.db "select count(*) from resolution where verdict <> 'at-least'")" 0 "settings with a bound"
+{ sed '/^store/d' steps.yaml && printf '%s\n' 'accuracy: {quantity: dust_fraction, within: 0.9}' 'store: stop.db'; } >waits.yaml
+expect 0 "$clast" plan waits.yaml --no-trial
+prints "no limit is seen in stop: total adds"
+! grep -Eq '^(chosen)? +stop .* yes' out || fail "stop, told as known: $(cat out)"
+sed 's/0.9/1e-5/' waits.yaml >waits5.yaml
+expect 65 "$clast" plan waits5.yaml --no-trial
+says "The results show no limit in stop up to 0.001"
+# Withheld results are no lack of time, and to study them again is no advice.
+printf '%s\n' 'name: dusty' 'scene: disruption@draft' 'set: {fidelity.particles: 1000, impact.specific_energy: 1 kJ/kg}' \
+  'accuracy: {quantity: dust_fraction, within: 5 %}' 'store: dusty.db' >dusty.yaml
+expect 0 "$clast" converge dusty.yaml --knob particles=500,1000 -Q dust_fraction --seeds 2 --within off -j 2
+prints "run, but results are withheld (dust): 500, 1000 *"
+expect 65 "$clast" plan dusty.yaml --no-trial
+says "with its own settings, 2 of 2 runs are withheld. dust: take more particles, or give a larger fragments.dust_mass"
 expect 0 env COLUMNS=50 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 ! grep -q "best: " err || fail "the legend tells a column that is left out"
 same "$(number finer.db "select max(n) from convergence")" 32 "seeds of the larger study"
@@ -615,4 +634,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 157
+done_after 163
