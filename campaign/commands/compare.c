@@ -120,7 +120,10 @@ static status run(const struct command_line *line, struct error *error) {
     uncertainty_missing(ask_pairs_missing(pairs, side, &wanted), wanted, path);
     uncertainty_left_out(left_out);
   }
-  OWNED char *apart = NULL;
+  OWNED char *apart = NULL, *alone = NULL;
+  TRY(ask_pairs_alone(pairs, &alone, error));
+  if (*alone)
+    fprintf(stderr, "clast: without a partner: %s\n", alone);
   TRY(ask_pairs_apart(pairs, &apart, error));
   if (*apart)
     fprintf(stderr, "clast: a and b also differ in %s\n", apart);

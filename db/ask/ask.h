@@ -469,8 +469,8 @@ struct ask_pairs_row {
 };
 
 /* Reads the values of both sides: STORE, STORE:POINT or STORE:CAMPAIGN. Of an exponent ("beta", estimates_named()) they
- * are the contributions of the runs: pooled_exponent_of_runs(). STATUS_USAGE: unknown name; STATUS_MISSING: no
- * such store. */
+ * are the contributions of the runs: pooled_exponent_of_runs(); where a difference is of pairs, those to the exponents
+ * of these runs alone. STATUS_USAGE: unknown name; STATUS_MISSING: no such store. */
 /* quantity NULL: the main quantity of the first store (ask_quantity_main()). Else borrowed until ask_pairs_free(). */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
                       struct ask_pairs **out, struct error *error);
@@ -483,6 +483,9 @@ const char *ask_pairs_namesakes(const struct ask_pairs *pairs, int side, const c
 int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path);
 /* ask_run_missing() of a side. */
 int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *wanted);
+/* The points without a partner: "1 of 3 points of a (strain 4 %), 7 of 9 points of b"; "": none. The caller frees
+ * *text, also after an error. */
+status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error *error);
 /* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. The caller
  * frees *text, also after an error. */
 status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error);

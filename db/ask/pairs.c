@@ -14,11 +14,12 @@ struct group {  /* the runs of one point */
   char *inputs; /* the same for readers, with ", " */
   char label[ASK_POOL_LABEL];
   int64_t point;
-  bool paired;
-  size_t first, count; /* in `values` */
-  size_t runs;         /* that have a value or, of an exponent, that count */
-  double exponent;     /* of the runs together; NaN: of another quantity */
-  const char *untold;  /* why tables for people show no exponent; NULL: they show it */
+  struct group *partner;        /* of the other side; NULL: none */
+  struct difference difference; /* from this group of the first side to its partner */
+  size_t first, count;          /* in `values` */
+  size_t runs;                  /* that have a value or, of an exponent, that count */
+  double exponent;              /* of the runs together; NaN: of another quantity */
+  const char *untold;           /* why tables for people show no exponent; NULL: they show it */
   struct ask_doubts doubts;
 };
 #define SEPARATOR '\n' /* char(10) in SQL */
@@ -40,7 +41,7 @@ struct ask_pairs {
   const char *quantity;
   char main[ASK_GROUP_NAME]; /* holds it where the caller named none */
   struct side side[2];
-  size_t at, found; /* the next group of side 0; pairs so far */
+  size_t at, found; /* the next group of side 0; number of pairs */
 };
 
 /* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. An
@@ -95,30 +96,37 @@ static int by_seed(const void *a, const void *b) {
   return (p->seed > q->seed) - (p->seed < q->seed);
 }
 
-/* Puts the contributions of the runs to their point's exponent in place of their values, in the order of their seeds;
- * none where the exponent has no interval. */
+/* Adds the contributions of a point's runs to its exponent, in the order of their seeds; none where the exponent has no
+ * interval. where: SQL that chooses runs; NULL: all. */
+static status read_exponent(struct store *store, enum exponent_method method, enum estimates_window window,
+                            const char *where, struct side *side, struct group *group, struct error *error) {
+  POINT_DATA point = {0};
+  OWNED double *contribution = NULL;
+  TRY(point_read_where(store, group->point, 0, where, &point, error));
+  const size_t runs = point.runs.count;
+  TRY(memory_array(&contribution, runs, sizeof *contribution, "the runs", error));
+  TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values, "the runs",
+                   error));
+  TRY(point_exponent_of_runs(&point, method, window, contribution, error));
+  group->first = side->value_count;
+  group->count = runs > 0 && isfinite(contribution[0]) ? runs : 0;
+  for (size_t r = 0; r < group->count; r++)
+    side->values[side->value_count++] = (struct difference_value){(int64_t)point.seed[r], contribution[r]};
+  qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
+  return STATUS_OK;
+}
+
+/* Puts the contributions in place of the values. */
 static status read_exponents(struct store *store, enum exponent_method method, enum estimates_window window,
                              struct side *side, struct error *error) {
   side->value_count = 0;
   for (size_t i = 0; i < side->group_count; i++) {
-    POINT_DATA point = {0};
-    OWNED double *contribution = NULL;
     struct pooled_exponent fit;
     struct group *group = &side->groups[i];
-    TRY(point_read(store, group->point, 0, &point, error));
-    const size_t runs = point.runs.count;
-    TRY(memory_array(&contribution, runs, sizeof *contribution, "the runs", error));
-    TRY(grow_or_fail(&side->values, &side->value_room, side->value_count + runs, sizeof *side->values, "the runs",
-                     error));
-    TRY(point_exponent_of_runs(&point, method, window, contribution, error));
-    group->first = side->value_count;
-    group->count = runs > 0 && isfinite(contribution[0]) ? runs : 0;
+    TRY(read_exponent(store, method, window, NULL, side, group, error));
     TRY(point_exponent(store, group->point, 0, method, window, 0.95, &fit, error));
     group->untold = pooled_exponent_untold(&fit);
     group->exponent = fit.fit.beta;
-    for (size_t r = 0; r < group->count; r++)
-      side->values[side->value_count++] = (struct difference_value){(int64_t)point.seed[r], contribution[r]};
-    qsort(side->values + group->first, group->count, sizeof *side->values, by_seed);
   }
   return STATUS_OK;
 }
@@ -169,6 +177,83 @@ static status open_side(const char *operand, struct ask_choice choice, struct si
   return side->axes ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
 
+/* The first group of the same inputs that has no partner yet; NULL: none. Groups are in the order of their inputs. */
+static struct group *partner_of(const struct group *group, struct side *side) {
+  size_t low = 0, high = side->group_count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (strcmp(side->groups[middle].list, group->list) < 0)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  for (; low < side->group_count && strcmp(side->groups[low].list, group->list) == 0; low++)
+    if (!side->groups[low].partner)
+      return &side->groups[low];
+  return NULL;
+}
+
+static struct difference difference_of(const struct side side[2], const struct group *a, const struct group *b) {
+  return sample_difference(a->count, side[0].values + a->first, b->count, side[1].values + b->first, 0.95);
+}
+
+/* SQL that chooses the seeds that both groups have. NULL: no memory. */
+static char *common_seeds(const struct side side[2], const struct group *a, const struct group *b) {
+  const struct difference_value *first = side[0].values + a->first, *second = side[1].values + b->first;
+  char *text = NULL;
+  FILE *out = text_open(&text);
+  for (size_t i = 0, j = 0; i < a->count && j < b->count;) {
+    const int64_t seed = first[i].seed, other = second[j].seed;
+    if (seed == other)
+      fprintf(out, "%s%lld", ftell(out) > 0 ? ", " : "seed IN (", (long long)seed);
+    i += seed <= other;
+    j += other <= seed;
+  }
+  fputs(")", out);
+  return text_close(out, &text);
+}
+
+/* The exponents of the common seeds alone, where the difference is of pairs: what a run contributes depends on all runs
+ * of the fit, also on those without a partner. */
+static status compare_common(struct store *const store[2], struct side side[2], const char *quantity,
+                             struct group *first, struct error *error) {
+  struct group group[2] = {*first, *first->partner};
+  struct difference *difference = &first->difference;
+  bool exponent;
+  enum exponent_method method;
+  enum estimates_window window;
+  TRY(estimates_named(quantity, &exponent, &method, &window, error));
+  if (!exponent || difference->pairs == 0 ||
+      (difference->pairs == difference->n[0] && difference->pairs == difference->n[1]))
+    return STATUS_OK;
+  OWNED char *where = common_seeds(side, &group[0], &group[1]);
+  if (!where)
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs");
+  for (int k = 0; k < 2; k++)
+    TRY(read_exponent(store[k], method, window, where, &side[k], &group[k], error));
+  const struct difference common = difference_of(side, &group[0], &group[1]);
+  if (common.n[0] == 0 || common.n[1] == 0)
+    *difference = common; /* no interval */
+  difference->difference = common.difference;
+  difference->half_width = common.half_width;
+  return STATUS_OK;
+}
+
+static status pair_groups(struct store *const store[2], struct ask_pairs *pairs, struct error *error) {
+  struct side *side = pairs->side;
+  for (size_t i = 0; i < side[0].group_count; i++) {
+    struct group *first = &side[0].groups[i];
+    first->partner = partner_of(first, &side[1]);
+    if (!first->partner)
+      continue;
+    pairs->found++;
+    first->partner->partner = first;
+    first->difference = difference_of(side, first, first->partner);
+    TRY(compare_common(store, side, pairs->quantity, first, error));
+  }
+  return STATUS_OK;
+}
+
 const char *ask_pairs_quantity(const struct ask_pairs *pairs) {
   return pairs->quantity;
 }
@@ -192,6 +277,7 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
   if (pairs->side[0].one_point != pairs->side[1].one_point)
     return status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
   qsort(pairs->side[0].groups, pairs->side[0].group_count, sizeof *pairs->side[0].groups, by_point);
+  TRY(pair_groups((struct store *const[]){a, b}, pairs, error));
   *out = pairs;
   pairs = NULL;
   return STATUS_OK;
@@ -214,41 +300,16 @@ void ask_pairs_drop(struct ask_pairs **pairs) {
   ask_pairs_free(*pairs);
 }
 
-/* The first group of the same inputs that has no partner yet; NULL: none. Groups are in the order of their inputs. */
-static struct group *partner_of(const struct group *group, struct side *side) {
-  size_t low = 0, high = side->group_count;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if (strcmp(side->groups[middle].list, group->list) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  for (; low < side->group_count && strcmp(side->groups[low].list, group->list) == 0; low++)
-    if (!side->groups[low].paired)
-      return &side->groups[low];
-  return NULL;
-}
-
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
   const struct side *a = &pairs->side[0];
-  struct side *b = &pairs->side[1];
   while (pairs->at < a->group_count) {
-    const struct group *first = &a->groups[pairs->at++];
-    struct group *second = partner_of(first, b);
+    const struct group *first = &a->groups[pairs->at++], *second = first->partner;
     if (!second)
       continue;
-    second->paired = true;
-    *row = (struct ask_pairs_row){{first->point, second->point},
-                                  first->inputs,
-                                  {first->label, second->label},
-                                  sample_difference(first->count, a->values + first->first, second->count,
-                                                    b->values + second->first, 0.95),
-                                  {&first->doubts, &second->doubts},
-                                  {first->runs, second->runs},
-                                  {first->untold, second->untold},
-                                  {first->exponent, second->exponent}};
-    pairs->found++;
+    *row = (struct ask_pairs_row){{first->point, second->point},     first->inputs,
+                                  {first->label, second->label},     first->difference,
+                                  {&first->doubts, &second->doubts}, {first->runs, second->runs},
+                                  {first->untold, second->untold},   {first->exponent, second->exponent}};
     return true;
   }
   return false;
@@ -333,6 +394,25 @@ status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error 
     free(side[k].varied);
   }
   return text_close(out, text) || code ? code : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+}
+
+status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error *error) {
+  FILE *out = text_open(text);
+  for (int k = 0; k < 2; k++) {
+    const struct side *side = &pairs->side[k];
+    const size_t alone = side->group_count - pairs->found;
+    if (alone == 0)
+      continue;
+    fprintf(out, "%s%zu of %zu points of %c", ftell(out) > 0 ? ", " : "", alone, side->group_count, 'a' + k);
+    const char *before = " (";
+    for (size_t i = 0; alone <= NAMED && i < side->group_count; i++)
+      if (!side->groups[i].partner) {
+        fprintf(out, "%s%s", before, side->groups[i].label);
+        before = "; ";
+      }
+    fputs(alone <= NAMED ? ")" : "", out);
+  }
+  return text_close(out, text) ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the points");
 }
 
 enum { LOOKED_AT = 300 }; /* points of a side */

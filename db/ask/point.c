@@ -25,16 +25,13 @@ static status read_version(struct store *store, int64_t point_id, struct point_d
   return answer_end(&answer);
 }
 
-/* Adds the runs behind those that *out has. */
-static status read_runs(struct store *store, int64_t point_id, const char *where, struct point_data *out,
+/* Adds the runs behind those that *out has. condition: SQL that chooses them. */
+static status read_runs(struct store *store, int64_t point_id, const char *condition, struct point_data *out,
                         struct error *error) {
   static const char what[] = "the runs of a point";
   const long long point = point_id, version = out->results_version;
   size_t have = out->runs.count, ids = have, seeds = have, firsts = out->first ? have + 1 : 0;
   size_t masses_have = out->first ? out->first[have] : 0, room = masses_have;
-  SQL_TEXT condition = where ? sql_format(" AND run_id IN (SELECT run_id FROM runs WHERE point_id = %lld AND (%s\n))",
-                                          point, where)
-                             : sql_format("");
   char of[64];
   snprintf(of, sizeof of, "a run of point %lld", point);
   TRY(grow_or_fail(&out->first, &firsts, have + 1, sizeof *out->first, what, error));
@@ -64,16 +61,20 @@ status point_add(struct store *store, int64_t point_id, const char *where, struc
                  struct error *error) {
   double element_mass, complete_mass;
   TRY(read_version(store, point_id, out, error));
-  TRY(read_runs(store, point_id, where, out, error));
+  SQL_TEXT condition = where
+                           ? sql_format(" AND run.run_id IN (SELECT run_id FROM runs WHERE point_id = %lld AND (%s\n))",
+                                        (long long)point_id, where)
+                           : sql_format("");
+  TRY(read_runs(store, point_id, condition, out, error));
   /* The window from_10 of a run begins at a known number of its mean element masses, or at complete_mass where that is
    * above (graded bodies of sph): then all windows begin there, also with an element as heavy. */
   TRY(answer_number(store, &element_mass, error,
-                    "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = %lld "
-                    "AND r.results_version = %lld AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",
-                    (long long)point_id, (long long)out->results_version));
+                    "SELECT avg(lower) FROM estimate e JOIN run ON run.run_id = e.run_id WHERE point_id = %lld AND "
+                    "results_version = %lld AND counts = 1 AND e.method = 'masses' AND e.window = 'from_10'%s",
+                    (long long)point_id, (long long)out->results_version, condition));
   TRY(answer_number(store, &complete_mass, error,
-                    "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1",
-                    OUTCOME_NAME(complete_mass), (long long)point_id, (long long)out->results_version));
+                    "SELECT avg(%s) FROM run WHERE point_id = %lld AND results_version = %lld AND counts = 1%s",
+                    OUTCOME_NAME(complete_mass), (long long)point_id, (long long)out->results_version, condition));
   /* fmax ignores a NaN */
   out->element_mass = fmax(out->element_mass, element_mass / estimates_window_elements(ESTIMATES_FROM_10));
   out->complete_mass = fmax(out->complete_mass, complete_mass);

@@ -134,8 +134,16 @@ for name in fixed grid impact; do
 done
 expect 0 "$clast" compare fixed.db grid.db --csv
 same "$(tail -n +2 out | cut -d , -f 1,2 | tr '\n' ' ')" "1,2 2,4 " "common points"
+says "without a partner: 2 of 4 points of b (strain 2 %, angle 2 deg; strain 5 %, angle 2 deg)"
 expect 0 "$clast" compare grid.db fixed.db --csv
 same "$(tail -n +2 out | wc -l)" 2 "common points of the stores the other way round"
+# The difference of an exponent is of the common seeds, too: equal runs have none, whatever others a side has.
+sed 's/0.05 ms/1 ms/; s/per_point: 3/per_point: 9/; s/fixed/nine/' fixed.yaml >nine.yaml
+sed 's/per_point: 9/per_point: 7/; s/nine/seven/' nine.yaml >seven.yaml
+expect 0 "$clast" run nine.yaml --quiet
+expect 0 "$clast" run seven.yaml --quiet
+expect 0 "$clast" compare nine.db seven.db -Q beta_masses_from_2 --csv
+same "$(tail -n +2 out | cut -d , -f 4-6,9 | tr '\n' ' ')" "9,7,7,0 9,7,7,0 " "runs, pairs and difference of an exponent"
 expect 64 "$clast" compare fixed.db impact.db
 says "only impact.db has collision.speed"
 sed 's/^vary: .*/vary: {impact.angle: [10 deg, 20 deg]}/; s/^name: .*/name: one-rock/; s|set: {|set: {target.material: basalt, |' own-rocks.yaml >one-rock.yaml
@@ -366,4 +374,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 141
+done_after 145
