@@ -73,6 +73,7 @@ function failures(store) {
 
 function one(store) {
   const campaigns = ask(store, questions.campaigns);
+  const number = (c) => (campaigns.filter(({name}) => name === c.name).length > 1 ? `, number ${c.campaign_id}` : ''); // what --campaign takes
   return element('div', {},
     element('h3', {}, store.name),
     list([
@@ -83,7 +84,7 @@ function one(store) {
     ]),
     store.inputs.length ? table('Inputs that were varied', ['input', 'values', 'unit', 'meaning'], varied(store)) : element('p', {}, 'No input was varied.'),
     failures(store),
-    ...campaigns.map((c) => element('details', {}, element('summary', {}, `The campaign file of ${c.name}`), element('pre', {}, c.document))));
+    ...campaigns.map((c) => element('details', {}, element('summary', {}, `The campaign file of ${c.name}${number(c)}`), element('pre', {}, c.document))));
 }
 
 export function showAsked(stores) {

@@ -273,7 +273,8 @@ def loads_again(browser):
         db.execute("INSERT INTO doubt VALUES (3, 'sph', 'box', 3)")
         db.execute("INSERT INTO doubt_mark VALUES ('sph', 'box', 'largest_fraction', 'box', 1)")
         db.execute("UPDATE runs SET largest_fraction = NULL")
-        db.execute("INSERT INTO campaign SELECT campaign_id + n, 'more ' || n, iif(n = 1, '# Written by clast find: a round of its runs.\n', '') || document, added_at FROM campaign, (SELECT 1 AS n UNION SELECT 2 UNION SELECT 3 UNION SELECT 4)")
+        db.execute("INSERT INTO campaign SELECT campaign_id + n, 'more ' || min(n, 4), iif(n = 1, '# Written by clast find: a round of its runs.\n', '') || document, added_at FROM campaign, (SELECT 1 AS n UNION SELECT 2 UNION SELECT 3 UNION SELECT 4 UNION SELECT 5)")
+        db.execute("INSERT INTO campaign_point SELECT 5, min(point_id) FROM campaign_point UNION SELECT 6, max(point_id) FROM campaign_point")
         db.commit()
         changed = base64.b64encode(gzip.compress(db.serialize())).decode()
     with open("again.html", "w", encoding="utf-8") as file:
@@ -288,6 +289,7 @@ def loads_again(browser):
                   " && document.querySelector('#points').textContent.includes('two: 20 and 60')")
     done("two modes of a result that is no main one are marked")
     browser.until("document.querySelector('h1')?.textContent.endsWith(', more 2, more 3 and 1 more')")
+    browser.until("[...document.querySelectorAll('#asked summary')].slice(-2).map((s) => s.textContent).join() === 'The campaign file of more 4, number 5,The campaign file of more 4, number 6'")
     done("a title names three campaigns, and no search whose points the page leaves out")
     browser.open("again.html", "#points=3")
     browser.until("/has a value of this quantity. !: in doubt, 3 of 3 runs. box .withholds the value.: /.test(document.querySelector('#seeds')?.textContent)")
