@@ -28,8 +28,10 @@ static status make_campaign(const struct fit *fit, struct campaign **out, struct
         design_axis_follow(axis, &campaign->axes[axis->linked].levels[j], 0, &campaign->axes[i].levels[j]);
     }
   }
-  snprintf(campaign->name, sizeof campaign->name, "%.100s fit %zu, %.100s", from->name, fit->rounds + 1, shot->name);
-  return driver_list_end(campaign, fit->scene_reference, "Written by clast fit: a round of its runs.", error);
+  char comment[80];
+  snprintf(comment, sizeof comment, "Written by clast fit: round %zu, shot %zu.", fit->rounds + 1, fit->shot + 1);
+  snprintf(campaign->name, sizeof campaign->name, "%.120s fit", from->name);
+  return driver_list_end(campaign, fit->scene_reference, comment, error);
 }
 
 /* Reads the error of the resolution from a study in the store, for data without `resolution`. */

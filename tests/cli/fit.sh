@@ -87,11 +87,13 @@ prints "MISFIT: no inputs within the priors predict largest_fraction well"
 grep -qE 'The data determine|NOT DETERMINED|RIDGE' out && fail "a contradiction in the report"
 
 # The rounds are campaigns that clast run can repeat; the first is the campaign itself.
+expect 0 "$clast" status disc.db
+same "$(sed 1d out | cut -c -21)" "       -  disc fit  f" "rounds are one row"
 expect 0 "$clast" check disc.db
 number disc.db "select document from campaign limit 1" >/dev/null
 sqlite3 disc.db "select document from campaign order by campaign_id limit 1" >round.yaml
 expect 0 "$clast" run round.yaml --store disc.db -j 2 --quiet --csv
-same "$(number disc.db "select count(distinct name) from campaign")" "$(number disc.db "select count(*) / 30 from run")" "rounds of 30 runs"
+same "$(number disc.db "select count(distinct substr(document, 1, instr(document, char(10)))) from campaign where document like '# Written by clast fit:%'")" "$(number disc.db "select count(*) / 30 from run")" "rounds of 30 runs"
 
 # Several numbers of two shots, one a mean.
 cat >two.yaml <<YAML
@@ -274,4 +276,4 @@ assert a['q05'] < 0.5 < a['q95'], a
 assert 0.045 < y['sd_seeds'] < 0.072, y  # 60 pairs tell it within 9 %
 PY
 ok "the scatter of seeds that act alike"
-done_after 42
+done_after 44
