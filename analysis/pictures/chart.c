@@ -18,7 +18,7 @@
 
 extern char **environ;
 
-enum { LETTER = 8, LINE = 19, LINES = 4 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
+enum { LETTER = 8, LINE = 19, LINES = 7 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
 enum { STEM = 256 };
 
 struct chart {

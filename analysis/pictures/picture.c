@@ -393,19 +393,33 @@ status picture_map(const struct picture_page *page, const struct picture_words *
 
 enum { MOST_FITS = 3, LABELS = PICTURE_SERIES * (1 + MOST_FITS), LINE_POINTS = 40 };
 
+/* The integral of u^-beta from 1 to `mass` over the lower end of the window. Without an upper end a rising or flat law
+ * has none: 700 is about the logarithm of the largest double. */
+static double integral(const struct picture_fit *fit, double mass) {
+  const double k = fit->beta - 1, span = isinf(mass) ? 700 : log(mass / fit->lower);
+  return fabs(k * span) < 1e-9 ? span : -expm1(-k * span) / k;
+}
+
+/* N(>= mass) of the law below `upper`, which has n fragments. */
+static double law_above(const struct picture_fit *fit, double n, double upper, double mass) {
+  return n > 0 ? n * (1 - integral(fit, mass) / integral(fit, upper)) : 0;
+}
+
 double picture_spectrum_fit(const struct picture_fit *fit, const struct pooled_form *form, double place) {
   const double mass = spectrum_size_mass(&form->size, place);
   if (!isfinite(fit->beta) || !(mass >= fit->lower) || !(mass < fit->upper) || !(fit->fragments_per_run > 0))
     return NAN;
-  /* The integral of u^-beta from 1 to u = m/lower. Without an upper end a rising or flat law has none: 700 is about
-   * the logarithm of the largest double. */
-  const double k = fit->beta - 1, span = isinf(fit->upper) ? 700 : log(fit->upper / fit->lower);
-  const double whole = fabs(k * span) < 1e-9 ? span : -expm1(-k * span) / k, u = log(mass / fit->lower);
+  if (form->cumulative && !fit->run)
+    return law_above(fit, fit->fragments_per_run, fit->upper, mass);
   if (form->cumulative) {
-    const double below = fabs(k * span) < 1e-9 ? u : -expm1(-k * u) / k;
-    return fit->larger_per_run + fit->fragments_per_run * (whole - below) / whole;
+    double sum = 0;
+    for (size_t r = 0; r < fit->runs; r++)
+      if (fit->run[r].largest >= mass)
+        sum += (double)fit->run[r].equal + law_above(fit, (double)fit->run[r].below, fit->run[r].largest, mass);
+    return sum / (double)fit->runs;
   }
-  const double density = fit->fragments_per_run / (fit->lower * whole) * exp(-fit->beta * u);
+  const double density = fit->fragments_per_run / (fit->lower * integral(fit, fit->upper)) *
+                         pow(mass / fit->lower, -fit->beta);
   /* m ~ L^d: dm/dL = d m/L */
   return form->size.density > 0 ? density * (form->size.dimensions == 2 ? 2 : 3) * mass / place : density;
 }

@@ -142,11 +142,18 @@ status picture_particles(const char *path, double width, const struct picture_cl
  * particles". */
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size);
 
-/* A fitted power law F(m) ~ m^-beta. Its line is normalised to the fit's number of fragments per run in [lower, upper);
- * a cumulative line also includes the larger fragments. */
+/* A fitted power law F(m) ~ m^-beta. Its line is normalised to the fit's number of fragments per run in [lower, upper).
+ * A cumulative line with `run` is the mean of the runs' N(>m), as the marks are: the law below the largest fragment of
+ * each run, and this fragment itself. */
+struct picture_run {
+  double largest;      /* kg */
+  size_t equal, below; /* fragments of this mass; fragments in [lower, largest) */
+};
 struct picture_fit {
-  const char *label;                                            /* "beta 2.03 +- 0.05" */
-  double beta, lower, upper, fragments_per_run, larger_per_run; /* upper may be HUGE_VAL */
+  const char *label;                            /* "beta 2.03 +- 0.05" */
+  double beta, lower, upper, fragments_per_run; /* upper may be HUGE_VAL */
+  size_t runs;
+  const struct picture_run *run; /* NULL: all have the window [lower, upper) */
 };
 /* The fit's value in a form at a place of the axis; NaN outside [lower, upper). */
 double picture_spectrum_fit(const struct picture_fit *fit, const struct pooled_form *form, double place);

@@ -21,13 +21,9 @@ void measured_release(struct measured *measured) {
 }
 
 /* N(>= mass[i]) for a sieve table: the mass of a class over its mean mass, that of equal masses per decade; of the last
- * class, which has no upper end, over its lower one. whole: kg of all classes with a lower end above 0. */
+ * class, which has no upper end, over its lower one. whole: kg of the body that shares are of. */
 static double number_above(const struct measured *measured, double whole, size_t i) {
-  const double *mass = measured->mass, *above = measured->above;
-  size_t first = 0;
-  while (first + 1 < measured->n && !(mass[first] > 0))
-    first++;
-  const double scale = above[first] > 0 ? whole / above[first] : 0;
+  const double *mass = measured->mass, *above = measured->above, scale = measured->shares ? whole : 1;
   double sum = 0;
   for (; i < measured->n; i++) {
     const bool last = i + 1 == measured->n;
@@ -58,6 +54,18 @@ static struct pooled_bin bin_of(const struct measured *measured, const struct po
   return bin;
 }
 
+/* Each bin gets the empty ones below it. Without them only bins that chance has filled would be drawn, and lie above
+ * the mean of many runs. Above the last fragment nothing is known. */
+static void take_empty_bins(size_t count, struct pooled_bin *bins, double complete) {
+  for (size_t b = 0; b < count; b++) {
+    const double first = complete > 0 ? complete : bins[0].lower, from = b > 0 ? fmax(bins[b - 1].upper, first) : first;
+    if (!(from < bins[b].lower))
+      continue;
+    bins[b].value *= (bins[b].upper - bins[b].lower) / (bins[b].upper - from);
+    bins[b].lower = from;
+  }
+}
+
 /* Single fragments are binned like simulated ones; thresholds are their own bins. */
 status measured_bins(const struct measured *measured, const struct pooled_form *form, double whole,
                      struct pooled_bin **bins, size_t *count, struct error *error) {
@@ -67,7 +75,9 @@ status measured_bins(const struct measured *measured, const struct pooled_form *
   if (measured->single && !form->cumulative) {
     const size_t first[2] = {0, measured->n};
     const struct pooled_runs runs = {1, first, measured->mass};
-    return pooled_spectrum(&runs, &one, bins, count, error);
+    TRY(pooled_spectrum(&runs, &one, bins, count, error));
+    take_empty_bins(*count, *bins, spectrum_size_of(&form->size, measured->complete));
+    return STATUS_OK;
   }
   TRY(memory_array(bins, measured->n, sizeof **bins, "a measured spectrum", error));
   for (size_t i = 0; i < measured->n; i++) {
@@ -256,8 +266,8 @@ static void compare_runs(const struct measured *m, size_t first, const struct po
   }
   out->simulated = sample_summarise_moments(&moments, 0.95);
   const double times = floor(out->fragments / out->simulated.mean); /* NaN for a sieve table */
-  if (out->simulated.mean < MATCH_SMALL && times >= 2) {
-    out->needed = (size_t)fmin(fmax(MATCH_GROUPS * times, MATCH_RUNS), 1e9);
+  if (out->simulated.mean > 0 && out->simulated.mean < MATCH_SMALL && times >= 2) {
+    out->needed = (size_t)fmin(fmax(MATCH_GROUPS * times, MATCH_RUNS), MATCH_MOST);
     if (runs->count >= out->needed)
       out->together = (size_t)times;
   }
@@ -312,7 +322,6 @@ struct reading {
   struct spectrum_size size;
   size_t place, amount; /* indices of columns */
   bool by_size;         /* fragments are given by size */
-  bool shares;          /* masses of classes are shares of the whole */
   bool has_density;     /* a remark has it */
   enum amount kind;
   const char *place_unit, *amount_unit, *amount_name; /* parts of the file */
@@ -545,7 +554,7 @@ static status read_amount(struct reading *r, const char *text, double *amount, s
     return refuse(r, error, "the unit of masses is g, kg or %, not", r->amount_unit);
   const bool weighed = *r->amount_unit && (unit_same_dimension(&unit, &mass) ||
                                            (r->size.dimensions == 2 && unit_same_dimension(&unit, &of_length)));
-  r->shares = !weighed;
+  r->out->shares = !weighed;
   if (weighed && r->kind == PASSING)
     return refuse(r, error, "the mass that passes is given in % of the whole, not in", r->amount_unit);
   TRY(add_unit(r, text, r->amount_unit, quantity, error));
@@ -629,7 +638,7 @@ static status take_rows(struct reading *r, struct error *error) {
   }
   if (!(above > 0))
     return status_fail(error, STATUS_CONTENT, "%s: there is no fragment in it", r->path);
-  if (r->kind == RETAINED && r->shares && above > 1.01) /* the classes are rounded */
+  if (r->kind == RETAINED && r->out->shares && above > 1.01) /* the classes are rounded */
     return status_fail(error, STATUS_CONTENT, "%s: %.4g %% of the mass are in its classes", r->path, 100 * above);
   if (!isfinite(above))
     return status_fail(error, STATUS_CONTENT, "%s: there are more fragments than a number can hold in it", r->path);

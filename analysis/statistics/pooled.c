@@ -36,9 +36,7 @@ static size_t window_end(const struct pooled_runs *runs, size_t r, double lower)
   return low;
 }
 
-/* The window of run r: fragments [*begin, *end), below its largest fragment, whose mass is returned. Fragments of the
- * same mass as the largest are also left out. */
-static double window_of(const struct pooled_runs *runs, size_t r, double lower, size_t *begin, size_t *end) {
+double pooled_window(const struct pooled_runs *runs, size_t r, double lower, size_t *begin, size_t *end) {
   *begin = runs->first[r];
   *end = window_end(runs, r, lower);
   if (*begin == runs->first[r + 1])
@@ -58,7 +56,7 @@ static bool differ(const struct pooled_runs *runs, double lower, size_t from, si
   for (size_t r = 0; r < runs->count && !enough; r++) {
     if (r >= from && r < to)
       continue;
-    window_of(runs, r, lower, &begin, &end);
+    pooled_window(runs, r, lower, &begin, &end);
     enough = exponent_masses_differ(end - begin, runs->masses + begin, &count, seen);
   }
   return enough;
@@ -68,7 +66,7 @@ static bool differ(const struct pooled_runs *runs, double lower, size_t from, si
 static struct power_law_group group_of(enum power_law_kind kind, const struct pooled_runs *runs, size_t r,
                                        double lower) {
   size_t begin, end;
-  const double largest = window_of(runs, r, lower, &begin, &end);
+  const double largest = pooled_window(runs, r, lower, &begin, &end);
   if (!(largest > lower) || begin >= end)
     return (struct power_law_group){0};
   return power_law_group_of(kind, end - begin, runs->masses + begin, lower, largest);
@@ -183,7 +181,7 @@ static size_t count_runs(const struct prepared *p, const struct pooled_runs *run
   *upper = 0;
   for (size_t r = 0; r < runs->count; r++) {
     size_t begin, end;
-    double largest = window_of(runs, r, lower, &begin, &end), inside = 0;
+    double largest = pooled_window(runs, r, lower, &begin, &end), inside = 0;
     for (size_t j = 0; j < p->bins; j++)
       inside += (double)p->counts[r * p->bins + j];
     if (p->groups)
@@ -547,7 +545,7 @@ static double common_divisor(double a, double b, double lower) {
 static double step_of_run(const struct pooled_runs *runs, size_t r, double lower) {
   size_t begin, end;
   double best = 0;
-  window_of(runs, r, lower, &begin, &end);
+  pooled_window(runs, r, lower, &begin, &end);
   for (size_t i = runs->first[r], pairs = 0; i + 1 < runs->first[r + 1] && pairs < PAIRS; i++) {
     const double heavier = runs->masses[i], lighter = runs->masses[i + 1];
     if (is_multiple(heavier, lighter, lower) && heavier < 1.5 * lighter)
@@ -646,7 +644,7 @@ static void take_runs(const struct pooled_runs *runs, double lower, struct windo
   size_t i = 0;
   for (size_t r = 0; r < runs->count; r++) {
     size_t begin, end;
-    window_of(runs, r, lower, &begin, &end);
+    pooled_window(runs, r, lower, &begin, &end);
     for (size_t k = begin; k < end; k++)
       found->u[i++] = log(runs->masses[k] / lower);
     windows->groups[r] = found->groups[r] = group_of(POWER_LAW_PURE, runs, r, lower);

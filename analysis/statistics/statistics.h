@@ -412,6 +412,10 @@ void pooled_exponent_tell(const char *reason, char *text, size_t size);
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error);
 
+/* The window of run r from a mass `lower` on: fragments [*begin, *end), below its largest fragment, whose mass is
+ * returned (NaN: none is so heavy). Fragments of the same mass as the largest are also left out. */
+double pooled_window(const struct pooled_runs *runs, size_t r, double lower, size_t *begin, size_t *end);
+
 /* The contribution of each run to the exponent, so that points with the same seeds can be compared seed by seed:
  * values[r] = beta + (n - 1) (mean of the others - beta without run r), with n the number of runs. Their mean is beta,
  * and Student's interval of their mean is the interval of pooled_exponent (up to SAMPLE_GROUPS runs; with more,
@@ -521,7 +525,8 @@ const char *estimates_short_name(const char *name);
 struct measured {
   bool single;      /* true: `mass` has every fragment; false: `mass` has thresholds, and `above` their numbers */
   bool bodies;      /* masses in kg beside those of a two-dimensional scene, kg/m: as if the bodies were 1 m deep */
-  bool weighed;     /* `above` has masses, in any unit: a sieve table */
+  bool weighed;     /* `above` has masses: a sieve table */
+  bool shares;      /* these are shares of the specimen's mass, not kg */
   size_t n;         /* masses, or thresholds */
   double *mass;     /* kg, ascending; owned */
   double *above;    /* N(>= mass[i]), or the mass of these fragments; owned */
@@ -535,15 +540,15 @@ status measured_read(const char *path, const struct spectrum_size *size, struct 
 void measured_release(struct measured *measured); /* a zeroed one is fine */
 
 /* Converts to bins of a spectrum, to be drawn beside others of the same form. Without intervals. The caller frees
- * *bins. whole: of a sieve table, the mass in kg that its classes get together, without that of fragments below the
- * finest sieve; the number of a class follows from its mass. */
+ * *bins. whole: kg, the body that a sieve table of shares is drawn for. The number of a class follows from its mass.
+ * Empty bins of single fragments from `complete` on belong to the next bin above, as they lower the mean. */
 status measured_bins(const struct measured *measured, const struct pooled_form *form, double whole,
                      struct pooled_bin **bins, size_t *count, struct error *error);
 
 /* Agreement of runs with measured data, for fragments of at least `complete` only. Shapes are compared, each normalised
  * by its own number of fragments; the numbers are given separately. Sieve tables: shares of the mass are compared
  * instead of numbers. */
-enum { MATCH_RUNS = 20, MATCH_GROUPS = 4, MATCH_SMALL = 20 };
+enum { MATCH_RUNS = 20, MATCH_GROUPS = 4, MATCH_SMALL = 20, MATCH_MOST = 1000000000 };
 struct measured_match {
   double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
   double fragments; /* number of measured fragments; NaN for a sieve table */
@@ -560,7 +565,7 @@ struct measured_match {
                             is drawn from the pool; half a fragment is added to each class. Compare it between pools
                             with the same `complete`. NaN for a sieve table */
   size_t judged;         /* runs with two or more fragments from `from` on */
-  size_t needed;         /* MATCH_RUNS, or MATCH_GROUPS times `together` */
+  size_t needed;         /* MATCH_RUNS, or MATCH_GROUPS times the runs of a draw; MATCH_MOST: so many or more */
   size_t together;       /* runs of a draw; 1: single runs are judged */
 };
 status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,

@@ -24,8 +24,9 @@ struct curve {
   struct pooled_bin *bins; /* owned */
   size_t count;
   double complete_mass; /* kg; NaN: not known */
-  double sieved;        /* kg of a run, in fragments that the finest sieve of a measured table retains */
-  struct picture_fit fit;
+  double mass;          /* kg, all fragments of all runs */
+  size_t runs;
+  struct picture_fit fit;      /* owns its runs */
   const char *untold;          /* why there is no fit; NULL: there is one, or the pool has several points */
   struct pooled_rivals rivals; /* n 0: not requested */
   struct picture_thin *thin;   /* one for each run; owned with their bins */
@@ -42,6 +43,20 @@ static void label_fit(struct curve *curve, double beta, double half_width) {
   uncertainty_number(value, width, number);
   snprintf(curve->fit_label, sizeof curve->fit_label,
            isfinite(width) ? "%s = %s (seeds, 95 %%)" : "%s = %s (no interval)", name, number);
+}
+
+/* The parts of N(>m): the window of each run, and the fragments that the fit leaves out. */
+static status make_runs(const struct pooled_runs *runs, struct picture_fit *fit, struct error *error) {
+  struct picture_run *run;
+  TRY(memory_array(&run, runs->count, sizeof *run, "the fit of a spectrum", error));
+  fit->run = run;
+  fit->runs = runs->count;
+  for (size_t r = 0; r < runs->count; r++) {
+    size_t begin, end;
+    const double largest = pooled_window(runs, r, fit->lower, &begin, &end);
+    run[r] = (struct picture_run){largest, begin - runs->first[r], end - begin};
+  }
+  return STATUS_OK;
 }
 
 static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct curve *curve, struct error *error) {
@@ -63,12 +78,12 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
               "; %zu fragments from %.3g %s on, the largest of each run left out", headline.fit.n,
               sizes ? spectrum_size_of(&curve->form.size, from) : from,
               sizes ? "m" : ask_pool_mass_unit(pool->data.dimensions));
-  curve->fit = (struct picture_fit){NULL,
-                                    headline.fit.beta,
-                                    headline.fit.lower,
-                                    headline.fit.upper,
-                                    (double)headline.fit.n / runs,
-                                    (double)headline.runs / runs};
+  curve->fit = (struct picture_fit){.beta = headline.fit.beta,
+                                    .lower = headline.fit.lower,
+                                    .upper = headline.fit.upper,
+                                    .fragments_per_run = (double)headline.fit.n / runs};
+  if (curve->form.cumulative)
+    TRY(make_runs(&pool->data.runs, &curve->fit, error));
   return with_rivals ? pooled_rivals(&pool->data.runs, lower, &curve->rivals, error) : STATUS_OK;
 }
 
@@ -98,13 +113,9 @@ static status make_curve(const struct spectrum_choice *choice, bool with_rivals,
     snprintf(curve->label, sizeof curve->label, "%s, %zu run%s%s", pool->label, runs, runs == 1 ? "" : "s", mark);
   else
     snprintf(curve->label, sizeof curve->label, "%s, %zu points, %zu runs%s", pool->label, pool->points, runs, mark);
-  const struct measured *measured = choice->measured;
-  size_t finest = 0;
-  while (measured && finest + 1 < measured->n && !(measured->mass[finest] > 0))
-    finest++;
-  for (size_t i = 0; measured && i < pool->data.runs.first[runs]; i++)
-    if (pool->data.runs.masses[i] >= measured->mass[finest])
-      curve->sieved += pool->data.runs.masses[i] / (double)runs;
+  curve->runs = runs;
+  for (size_t i = 0; i < pool->data.runs.first[runs]; i++)
+    curve->mass += pool->data.runs.masses[i];
   TRY(pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error));
   TRY(fit_curve(pool, with_rivals, curve, error));
   if (choice->runs)
@@ -155,6 +166,7 @@ static void release(struct curves **curves) {
     for (size_t r = 0; r < curve->thin_count; r++)
       free((void *)curve->thin[r].bins);
     free(curve->thin);
+    free((void *)curve->fit.run);
     free(curve->bins);
   }
   free(*curves);
@@ -186,10 +198,37 @@ static void write_caption(struct store *store, const struct curves *curves, char
   bool lines = false;
   for (size_t i = 0; i < curves->count; i++)
     lines |= isfinite(curves->curve[i].fit.beta);
-  if (lines && !choice->cumulative)
-    text_append(caption, CAPTION, ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
+  if (lines)
+    text_append(caption, CAPTION,
+                choice->cumulative
+                    ? ". Lines: the law below the largest fragment of each run, and this fragment itself"
+                    : ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
   text_append(caption, CAPTION, "%s%s", *untold ? ". No line: " : "", untold);
   charts_doubts(&curves->doubts, caption, CAPTION);
+}
+
+/* Bins and words of the measured spectrum. label: room for `size` bytes. A table of shares alone needs a mass to tell
+ * numbers: that of the drawn runs, which every scene gives. */
+static status measured_series(const struct curves *curves, const struct pooled_form *form, char *label, size_t size,
+                              struct pooled_bin **bins, struct picture_series *series, struct error *error) {
+  const struct measured *measured = curves->choice->measured;
+  double mass = 0, runs = 0;
+  for (size_t i = 0; i < curves->count; i++) {
+    mass += curves->curve[i].mass;
+    runs += (double)curves->curve[i].runs;
+  }
+  *series = (struct picture_series){.label = label, .measured = true, .complete_mass = measured->complete};
+  snprintf(label, size, "measured%s%s", *measured->source ? ": " : "", measured->source);
+  if (measured->shares)
+    text_append(label, size, " (sieves: number of a class from its share of a body of %.3g %s, the mean mass of a run)",
+                mass / runs, ask_pool_mass_unit(form->size.dimensions));
+  else if (measured->weighed)
+    text_append(label, size, " (sieves: number of a class from its mass)");
+  else if (measured->single && !form->cumulative)
+    text_append(label, size, " (a mark stands for its bin and the empty ones below)");
+  TRY(measured_bins(measured, form, mass / runs, bins, &series->count, error));
+  series->bins = *bins;
+  return STATUS_OK;
 }
 
 static status draw_picture(struct store *store, const struct curves *curves, const struct picture_page *page,
@@ -208,14 +247,8 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     form = curves->curve[0].form;
   for (; count < curves->count; count++)
     series[count] = series_of(&curves->curve[count]);
-  if (measured && measured->n) {
-    series[count] = (struct picture_series){.measured = true, .complete_mass = measured->complete};
-    TRY(measured_bins(measured, &form, curves->curve[0].sieved, &bins, &series[count].count, error));
-    snprintf(label, sizeof label, "measured%s%s%s", *measured->source ? ": " : "", measured->source,
-             measured->weighed ? " (sieves: number of a class from its share of the mass of a run)" : "");
-    series[count].bins = bins;
-    series[count++].label = label;
-  }
+  if (measured && measured->n)
+    TRY(measured_series(curves, &form, label, sizeof label, &bins, &series[count++], error));
   write_caption(store, curves, caption);
   if (measured && measured->n && !measured->single && !form.cumulative && measured->above[measured->n - 1] > 0)
     text_append(caption, CAPTION, ". Measured: the class from %.3g %s on has no upper end and is drawn only in N(>%c)",

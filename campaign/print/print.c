@@ -337,9 +337,14 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
 
 static const double FAR = 0.05; /* the measured spectrum differs from a pool when fewer runs are as far */
 
-/* The answer in words: of one pool with its share of runs, of more with their numbers. */
+static const char *most_needed(const struct measured_match *match) {
+  return match->needed < MATCH_MOST ? "" : " or more";
+}
+
+/* The answer in words: of one pool with its share of runs, of more with their numbers. few: of the rows with
+ * a distance and no share, that of the fewest runs; needed 0: none. */
 static void tell_shape(size_t pools, size_t agree, size_t differ, const struct measured_match *match, bool nothing,
-                       const size_t judged[2]) {
+                       const size_t judged[2], const struct measured_match *few) {
   const double share = match->share;
   char joined[120] = "of the runs are as far from the other runs as the measured spectrum is";
   if (match->together > 1)
@@ -350,20 +355,24 @@ static void tell_shape(size_t pools, size_t agree, size_t differ, const struct m
   else if (agree + differ == 0)
     words_print(stdout, "",
                 judged[0] == judged[1]
-                    ? "no verdict on the shape: it needs %zu runs of two fragments or more from the mass in column "
+                    ? "no verdict on the shape: it needs %zu%s runs of two fragments or more from the mass in column "
                       "`from` on, and has %zu"
-                    : "no verdict on the shape: it needs %zu runs of two fragments or more from the mass in column "
+                    : "no verdict on the shape: it needs %zu%s runs of two fragments or more from the mass in column "
                       "`from` on; the rows have %zu to %zu",
-                match->needed, judged[0], judged[1]);
-  else if (pools > 1)
-    words_print(
-        stdout, "",
-        pools == agree + differ
-            ? "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu"
-            : "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu, no verdict on "
-              "%zu, of which one has %zu runs of two fragments or more (%zu are needed)",
-        agree, pools, FAR, differ, pools - agree - differ, judged[0], match->needed);
-  else
+                match->needed, most_needed(match), judged[0], judged[1]);
+  else if (pools > 1) {
+    char rest[160] = "";
+    if (pools > agree + differ)
+      text_append(rest, sizeof rest, ", no verdict on %zu", pools - agree - differ);
+    if (few->needed)
+      text_append(rest, sizeof rest,
+                  ", of which one has %zu of the %zu%s runs of two fragments or more that are needed", few->judged,
+                  few->needed, most_needed(few));
+    if (nothing)
+      text_append(rest, sizeof rest, "; where there is no distance, see below");
+    words_print(stdout, "", "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu%s",
+                agree, pools, FAR, differ, rest);
+  } else
     words_print(stdout, "", "%s in shape, whatever the number of fragments: %.2g %% %s (differs: below %.2g %%)",
                 agree ? "agrees" : "differs", 100 * share, joined, 100 * FAR);
   putchar('\n');
@@ -396,7 +405,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
   size_t count = 0, agree = 0, differ = 0;
-  struct measured_match last = {.share = NAN, .needed = MATCH_RUNS, .together = 1};
+  struct measured_match last = {.share = NAN, .needed = MATCH_RUNS, .together = 1}, few = {0};
   bool nothing = false;                           /* a spectrum has no fragment above the mass where all are complete */
   bool empty = false, lone = false, told = false; /* which one; and a row has a distance */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
@@ -406,6 +415,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     empty |= match.simulated.mean == 0; /* NaN: the measured spectrum has none */
     lone |= !isfinite(match.distance) && !(match.simulated.mean == 0);
     told |= isfinite(match.distance);
+    if (isfinite(match.distance) && isnan(match.share) && (!few.needed || match.judged < few.judged))
+      few = match;
     match.needed = match.needed > last.needed ? match.needed : last.needed;
     last = match;
     count++;
@@ -437,7 +448,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   }
   TRY(ask_pools_end(&pools));
   if (table_for_people(format))
-    tell_shape(count, agree, differ, &last, nothing, judged);
+    tell_shape(count, agree, differ, &last, nothing, judged, &few);
   TRY(table_end(table, error));
   if (table_for_people(format)) {
     uncertainty_doubts(&sum, stderr);
@@ -461,6 +472,10 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
                                  : "class",
               measured->single ? "fragment has" : "class begins at", measured->n ? measured->mass[measured->n - 1] : 0,
               measured->bodies ? "kg" : kg, heaviest, kg);
+    if (measured->weighed && !measured->shares)
+      given = measured->above[0];
+    /* Light fragments were not collected: how much they weigh is not known. */
+    const bool partial = measured->complete > 0 || (measured->weighed && measured->mass[0] > 0);
     for (size_t i = 0; !measured->weighed && i < measured->n; i++) {
       const double beyond = i + 1 < measured->n ? measured->above[i + 1] : 0;
       given += measured->mass[i] * (measured->single ? 1 : measured->above[i] - beyond); /* at least, with thresholds */
@@ -470,7 +485,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
           "clast: this scene is two-dimensional: its masses are per metre of thickness, the measured ones in kg count "
           "as of 1 m. Divide them by the thickness of the specimen, and name the column mass (kg/m)\n",
           stderr);
-    else if (given > 0 && fmax(given / body[0], body[1] / given) > SAME_MASS) {
+    else if (given > SAME_MASS * body[0] || (given > 0 && body[1] > SAME_MASS * given && !partial)) {
       char other[48] = "";
       if (body[1] > 1.001 * body[0])
         snprintf(other, sizeof other, " to %.3g", body[1]);

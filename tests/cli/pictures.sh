@@ -52,6 +52,13 @@ ok "distances from a measured spectrum"
 expect 0 "$clast" spectrum small.db --point 1 --with measured.csv # the first line answers
 head -2 out | tr '\n' ' ' | grep -Eq '^no verdict on the shape: it needs 20 runs .* has [0-3] ' || fail "no word on 3 runs"
 tr '\n' ' ' <out | grep -q 'from the mass in column `from` on, and has' || fail "runs from which mass on"
+# How much the specimen weighed is not known where light fragments were not collected.
+printf 'mass (kg/m)\n3\n2\n' >light.csv
+expect 0 "$clast" spectrum small.db --point 1 --with light.csv
+says "give the body of the scene the size of the specimen"
+(echo '# complete from: 1.5 kg/m'; cat light.csv) >partial.csv
+expect 0 "$clast" spectrum small.db --point 1 --with partial.csv
+grep -q "size of the specimen" err && fail "a part of the fragments is taken for all"
 # Why there is no distance: what is missing is named.
 printf 'mass (kg), count\n5000, 3\n' >heavy.csv
 expect 0 "$clast" spectrum small.db --point 1 --with heavy.csv
@@ -76,12 +83,19 @@ rows = list(csv.DictReader(open("out")))
 assert len(rows) == 4 and all(0 <= float(r["distance"]) <= 1 and r["measured"] == r["log_likelihood"] == "" for r in rows), rows
 PY
 expect 0 "$clast" spectrum small.db --point 1 --with sieves.csv --picture sieves.svg --keep-script
-grep -q "number of a class from its share of the mass" sieves.gp || fail "the sieve table has no curve"
+tr '\n' ' ' <sieves.gp | grep -q "number of a class from its share of a body of" || fail "the sieve table has no curve, or no mass"
+sed '2,3d' sieves.csv >coarse.csv # simulated fragments pass, other shares of each point
+for p in 1 4; do
+  expect 0 "$clast" spectrum small.db --point $p --with coarse.csv --picture coarse-$p.svg --keep-script
+done
 python - <<'PY'
-blocks = open("sieves.dat").read().split("\n\n\n")
-sieve = [[float(x) for x in l.split()] for b in blocks[1:] for l in b.splitlines() if l and l[0] != "#"]
-assert len([r for r in sieve if r[1] > 0]) >= 3, blocks
+def sieve(path): # the second block: the fits come after it
+    return [[float(x) for x in l.split()[:2]] for l in open(path).read().split("\n\n\n")[1].splitlines() if l and l[0] != "#"]
+one, other = sieve("coarse-1.dat"), sieve("coarse-4.dat")
+assert len([r for r in one if r[1] > 0]) >= 2, one
+assert all(a[0] == b[0] and abs(a[1] / b[1] - 1) < 1e-5 for a, b in zip(one, other) if a[1] > 0), (one, other)
 PY
+ok "marks of a sieve table do not move with the point"
 grep -q "has no upper end" sieves.gp && fail "a sieve table without a mass above its last sieve has an open class"
 sed 's/6;100/6;90/' sieves.csv >open.csv
 expect 0 "$clast" spectrum small.db --point 1 --with open.csv --picture open.svg --keep-script
@@ -420,4 +434,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 153
+done_after 158

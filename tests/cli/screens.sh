@@ -32,6 +32,14 @@ same "$(tr '\n' ' ' <err | sed 's/.*complete from \([^ ]*\) .*/\1/')" "$("$clast
 expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2 --quiet
 expect 0 "$clast" spectrum many.db --point 4 --picture many.png --keep-script
 grep -q 'the largest of each run left out' many.gp && tr '\n' ' ' <many.gp | sed "s/'\.\"[^ ]*\"\.'/ /g" | grep -q 'Lines leave out the largest fragment of each run' || fail "no word on the largest fragments"
+expect 0 "$clast" spectrum many.db --point 4 --cumulative --picture sums.png --keep-script
+python - <<'PY' || fail "the cumulative line is beside its marks"
+marks, line = ([[float(x) for x in l.split()] for l in block.splitlines() if l and l[0] not in "#N"] for block in open("sums.dat").read().split("\n\n\n")[:2])
+heavy = [m for m in marks if m[2] == m[2] and line[0][0] <= m[0] <= line[-1][0] and m[0] > 10] # where most runs have their largest only
+near = lambda place: min(line, key=lambda p: abs(p[0] - place))[1]
+assert len(heavy) >= 2 and all(low <= near(place) <= high for place, _, low, high, _ in heavy), (heavy, line)
+PY
+ok "the cumulative line counts each largest fragment once"
 expect 0 "$clast" estimates many.db
 says "without the largest of each run (ML)"
 
@@ -194,4 +202,4 @@ same "$(number levels.db "select count(*) from convergence where n = 18")" 4 "le
 expect 0 "$clast" explain withheld
 prints '"-" in tables'
 
-done_after 50
+done_after 52

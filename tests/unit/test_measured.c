@@ -223,6 +223,38 @@ static void sieves(void **state) {
   near(bins[2].value, 1 + 10 * log(4 / 3.0));
   free(bins);
   measured_release(&m);
+  /* Shares of all mass, also of what passes the finest sieve: 80 % of 10 kg are 8 kg from 4 kg on. */
+  assert_int_equal(read_text("mass (kg),passing (%)\n1,20\n4,20\n", &no_size, &m), STATUS_OK);
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 10, &bins, &count, &error), STATUS_OK);
+  near(bins[1].value, 2);
+  free(bins);
+  measured_release(&m);
+  /* Masses of classes need no other mass. */
+  assert_int_equal(read_text("mass (kg),retained (kg)\n1,1\n4,8\n", &no_size, &m), STATUS_OK);
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 10, &bins, &count, &error), STATUS_OK);
+  near(bins[1].value, 2);
+  free(bins);
+  measured_release(&m);
+}
+
+/* The bins of single fragments hold all of the axis from the complete mass to the heaviest: so many fragments per kg
+ * are in the list. */
+static void empty_bins_count(void **state) {
+  (void)state;
+  struct measured m;
+  struct pooled_bin *bins;
+  size_t count;
+  assert_int_equal(read_text("# complete from: 3 kg\nmass (kg)\n4.4\n5.9\n5.91\n16\n", &no_size, &m), STATUS_OK);
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error), STATUS_OK);
+  assert_int_equal(count, 3);
+  near(bins[0].lower, 3);
+  for (size_t b = 0; b < count; b++) {
+    assert_true(b == 0 || bins[b].lower == bins[b - 1].upper);
+    near(bins[b].value * (bins[b].upper - bins[b].lower), (double)bins[b].count);
+  }
+  assert_true(bins[1].count == 2 && bins[2].upper > 16);
+  free(bins);
+  measured_release(&m);
 }
 
 /* Runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */
@@ -270,6 +302,10 @@ static void distances(void **state) {
   near(match.log_likelihood, log((RUNS + 0.5) / (2 * RUNS + 1.5)) + 2 * log(0.5 / (2 * RUNS + 1.5)));
   assert_int_equal(measured_compare(&m, &runs, 10, &match, &error), STATUS_OK);
   assert_true(isnan(match.distance) && match.fragments == 0);
+  /* No simulated fragment is so heavy: no number of runs is needed beside those of a shape. */
+  assert_int_equal(measured_compare(&m, &runs, 5, &match, &error), STATUS_OK);
+  assert_true(match.simulated.mean == 0 && match.judged == 0);
+  assert_int_equal(match.needed, MATCH_RUNS);
 }
 
 /* One experiment that is a run like the others: its distance is as large as that of a share of the runs which is
@@ -366,6 +402,7 @@ int main(void) {
                                      cmocka_unit_test(bad_files),
                                      cmocka_unit_test(forms_of_laboratories),
                                      cmocka_unit_test(sieves),
+                                     cmocka_unit_test(empty_bins_count),
                                      cmocka_unit_test(distances),
                                      cmocka_unit_test(a_run_among_runs),
                                      cmocka_unit_test(a_specimen_with_more_fragments_than_a_run),

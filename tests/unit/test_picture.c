@@ -180,8 +180,9 @@ static void spectra_are_drawn(void **state) {
                                       0.0057,
                                       HUGE_VAL,
                                       EACH,
-                                      0};
-    fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH, 0};
+                                      0,
+                                      NULL};
+    fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH, 0, NULL};
   }
   assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("spectrum.png"), .width = 900},
                                     &(struct picture_words){"disc-explosion, 40 runs", NULL, "mass (kg)", "F(m)"},
@@ -201,6 +202,18 @@ static void spectra_are_drawn(void **state) {
                    STATUS_USAGE);
   free(bins[0]);
   free(bins[1]);
+}
+
+/* The cumulative line is the mean of the runs' N(>m). For beta 2 the law below M has N(>m) ~ 1/m - 1/M. */
+static void a_line_has_the_largest_fragments(void **state) {
+  (void)state;
+  const struct picture_run run[] = {{4, 1, 3}, {2, 2, 0}, {0.5, 0, 0}};
+  const struct picture_fit fit = {NULL, 2, 1, 4, 1, 3, run};
+  const struct pooled_form form = {.cumulative = true};
+  assert_true(fabs(picture_spectrum_fit(&fit, &form, 1) - 6 / 3.0) < 1e-12);
+  assert_true(fabs(picture_spectrum_fit(&fit, &form, 2) - (2 + 1 + 3 * (1 / 2.0 - 1 / 4.0) / (1 - 1 / 4.0)) / 3) <
+              1e-12);
+  assert_true(fabs(picture_spectrum_fit(&fit, &form, 3) - (1 + 3 * (1 / 3.0 - 1 / 4.0) / (1 - 1 / 4.0)) / 3) < 1e-12);
 }
 
 static void maps_are_drawn(void **state) {
@@ -655,6 +668,7 @@ int main(int count, char **arguments) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(fragments_are_drawn),
       cmocka_unit_test(spectra_are_drawn),
+      cmocka_unit_test(a_line_has_the_largest_fragments),
       cmocka_unit_test(maps_are_drawn),
       cmocka_unit_test(profiles_are_drawn),
       cmocka_unit_test(frame_holds_the_projectile),

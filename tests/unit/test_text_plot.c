@@ -29,7 +29,7 @@ static void rows_and_columns(void **state) {
                                   .half_width = 0.3 * pow(10, 8 - 2 * i)};
   }
   bins[4].half_width = bins[4].value; /* reaches down to zero */
-  struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4, 0};
+  struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4, 0, NULL};
   struct picture_series series = {.label = "all", .count = 5, .bins = bins, .fits = 1, .fit = &fit};
   char *text = plot(100, false, &series), *line = strtok(text, "\n");
   int last = 1000, rows = 0;
