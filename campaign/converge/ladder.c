@@ -61,8 +61,7 @@ static status set_inputs(const struct making *making, const struct field_value *
     if (!making->rows[i])
       continue;
     struct field_value value = making->own[i];
-    const double by = pow(factor, making->knob->inputs[i].power);
-    const double change = making->knob->inputs[i].at_least ? fmax(by, 1) : by;
+    const double change = pow(factor, making->knob->inputs[i].power);
     value.number *= change;
     value.integer = llround((double)value.integer * change);
     code = scene_set(scene, making->rows[i]->path, &value, error);
@@ -70,23 +69,28 @@ static status set_inputs(const struct making *making, const struct field_value *
   return code == STATUS_OK ? scene_check(scene, error) : code;
 }
 
+/* Why a scene does not have the spacing that its setting stands for (malloc'd); "": it has. */
+static char *why_unkept(const struct knob *knob, const struct scene *scene) {
+  char *why = NULL;
+  FILE *out = text_open(&why);
+  if (knob->tell_unkept)
+    knob->tell_unkept(scene->inputs, out);
+  return text_close_small(out, &why);
+}
+
+bool ladder_is_kept(const struct knob *knob, const struct scene *scene) {
+  OWNED char *why = why_unkept(knob, scene);
+  return !*why;
+}
+
 /* Leaves a level out, with a note, when it does not keep what its setting says; where the scene's own one does not
  * either, all stay. */
 static bool is_unkept(const struct making *making, const struct ladder_level *level) {
-  OWNED char *own = NULL, *why = NULL;
-  if (level->base || !making->knob->tell_unkept)
-    return false;
-  FILE *out = text_open(&own);
-  making->knob->tell_unkept(making->base->inputs, out);
-  text_close_small(out, &own);
-  out = text_open(&why);
-  making->knob->tell_unkept(level->scene->inputs, out);
-  text_close_small(out, &why);
-  if (*own || !*why)
-    return false;
-  if (making->notes)
+  OWNED char *why = level->base || !ladder_is_kept(making->knob, making->base) ? NULL
+                                                                               : why_unkept(making->knob, level->scene);
+  if (why && *why && making->notes)
     fprintf(making->notes, "%s = %s is left out%s\n", making->rows[0]->path, level->setting, why);
-  return true;
+  return why && *why;
 }
 
 /* Adds a level unless it is there already. One that the scene refuses becomes a note. */

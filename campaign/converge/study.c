@@ -248,7 +248,7 @@ static status add_finer(const struct study_ladder *ladder, const struct study_fo
     field_defaults(&convergence_table, row);
     snprintf(row->setting, sizeof row->setting, "%.6g",
              strtod(finest->setting, NULL) * pow(2, knob->step_power < 0 ? i : -i));
-    if (ladder_turn(knob, scene, row->setting, &refused) != STATUS_OK)
+    if (ladder_turn(knob, scene, row->setting, &refused) != STATUS_OK || !ladder_is_kept(knob, scene))
       continue;
     memcpy(row->knob, finest->knob, sizeof row->knob);
     memcpy(row->quantity, finest->quantity, sizeof row->quantity);

@@ -49,12 +49,11 @@ static const struct knob knobs[] = {
                     "particles"),
     KNOB("impact_zone", RESOLUTION,
          .inputs = {{"fidelity.spacings_per_radius", 1},
-                    {"fidelity.particles", 3, .at_least = true},
                     {"fidelity.fine_spacing", -1, .given = true},
                     {"fidelity.fine_radius", 0}},
          .factors = {0.5, 0.71, 1, 1.41}, .step_power = -1, .tell_unkept = sph_derived_tell_unkept,
-         .meaning = "particle spacings in the projectile's radius where it hits and in the projectile; finer than the "
-                    "scene's own, the particles grow with their cube"),
+         .meaning = "particle spacings in the projectile's radius where it hits and in the projectile; the number of "
+                    "particles stays, so that it bounds the finest level"),
     KNOB("points", RESOLUTION, .inputs = {{"fidelity.points", 1}}, KNOB_HALVES, .step_power = -1,
          .meaning = "spacings along a plate"),
     KNOB("projectile", RESOLUTION, .inputs = {{"fidelity.projectile_spacing", 1}}, .factors = {2, 1.41, 1, 0.71},
