@@ -63,7 +63,7 @@ vary: {threshold.strain: {log_uniform: [1 %, 8 %]}}
 design: {kind: latin_hypercube, points: 8, seed: 3}
 seeds: {per_point: 3}
 YAML
-expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db --quiet
+expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db
 weak=$(grep -c '~' out || true)
 says "one row, from its least to its largest value"
 [ "$weak" -gt 0 ] || fail "no weak mean is marked"
@@ -102,11 +102,11 @@ measured largest_fraction
 expect 0 "$clast" fit shots.yaml disc.yaml --rounds 3 --quiet -j 2
 
 # The error of the resolution below a search is that of its own point nearest to the answer, and the study offered is of it.
-expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db --quiet
+expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db
 study=$(tr '\n' ' ' <err | grep -o '`clast converge [^`]*`' | tr -d '`')
 says "largest_fraction at threshold.strain = "
 eval "expect 0 '$clast' ${study#clast} --knob time_step --seeds 2 --within off --quiet"
-expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db --quiet
+expect 0 "$clast" find search.yaml --level 0.25 --max-runs 20 --store found.db
 says "(resolution: time_step)"
 grep -qF "studied at" err && fail "a search tells of points that are not its own"
 
