@@ -89,6 +89,7 @@ fi
 
 # one writer: the second gets a message that names the first; readers can read meanwhile
 waiting slow
+sed -i 's/20 ms/90 ms/' stick.yaml # it must outlive two that wait 4 s each for it
 "$toy" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
 pid=$!
 for i in $(seq 100); do "$toy" status slow.db 2>/dev/null | grep -q slow && break; sleep 0.05; done
