@@ -23,7 +23,7 @@ extern const char *const engine_knob_groups[]; /* "resolution", "part", "model",
 struct knob_input {
   const char *path;
   double power; /* a level of f times the scene's first input sets this one to f^power times its own value; 0 keeps it
-                    where it would follow from others */
+                   where it would follow from others */
   bool given;   /* only where the scene gives it; unless given, it follows from others */
 };
 

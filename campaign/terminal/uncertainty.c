@@ -109,9 +109,10 @@ void uncertainty_missing(int64_t missing, int64_t wanted, const char *store) {
 }
 
 void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path) {
+  char word[TEXT_WORD];
   if (*numbers)
     fprintf(stderr, "clast: campaigns %s of %s are called %s: `%s --campaign %.*s` takes one alone\n", numbers, path,
-            campaign, path, (int)strcspn(numbers, ","), numbers);
+            campaign, text_word(path, word), (int)strcspn(numbers, ","), numbers);
 }
 
 void uncertainty_left_out(int64_t points) {
