@@ -23,7 +23,7 @@ static status merge_source(struct store *store, const char *target, const char *
             " run%s of %s stay%s excluded in %s: `clast exclude %s` lists them, `clast exclude %s RUN "
             "--undo` counts one again\n",
             here, text_plural(here), source, here == 1 ? "s" : "", target, text_word(target, target_word),
-            target_word + 1);
+            text_word(target, target_word));
   if (*differing)
     fprintf(stderr,
             "clast: warning: %s: %" PRId64 " run%s that %s has too gave other results there; those of %s were kept. "
