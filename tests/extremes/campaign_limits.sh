@@ -51,7 +51,7 @@ fi
 
 # The store: held by another, foreign, in no folder.
 tiny held
-sed -i 's/per_point: 3/per_point: 400/' held.yaml
+sed -i 's/per_point: 3/per_point: 20000/' held.yaml
 "$clast" run held.yaml -j 1 -q >/dev/null 2>&1 &
 holder=$!
 for _ in $(seq 100); do [ "$(ask held.db 'select count(*) from run' 2>/dev/null || echo 0)" -gt 0 ] && break; sleep 0.1; done
