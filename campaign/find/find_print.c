@@ -270,8 +270,8 @@ static status read_resolution(const struct find *find, struct store *store, cons
   return STATUS_OK;
 }
 
-/* The error of the resolution at the answer, as the sentence has it. If no study was made there, that at the point of
- * the search that is nearest to it counts. */
+/* The error of the resolution at the crossing, as the sentence has it. If no study was made there, that at the point of
+ * the search that is nearest to it counts. Without a crossing this point is the end where the level is nearest. */
 static status tell_resolution(const struct find *find, struct error *error) {
   const struct crossing *found = &find->found;
   const bool one = found->kind == CROSSING_FOUND;
@@ -281,7 +281,7 @@ static status tell_resolution(const struct find *find, struct error *error) {
   char column[FIELD_TEXT_SIZE], at[FIND_TEXT] = "", text[UNCERTAINTY_TEXT];
   STORE store = NULL;
   for (size_t i = 0; i < find->runs; i++)
-    if (isfinite(find->y[i]) && fabs(find->x[i] - (one ? found->at : 0.5)) < fabs(x - (one ? found->at : 0.5)))
+    if (isfinite(find->y[i]) && fabs(find->x[i] - found->at) < fabs(x - found->at))
       x = find->x[i];
   if (!isfinite(x))
     return STATUS_OK;

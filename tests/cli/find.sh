@@ -113,6 +113,7 @@ says "$(($(number disc.db "select count(*) from run") - 20)) other runs at place
 prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the"
 grep -q "runs: between" err && fail "an interval of no crossing"
 grep -q "holds the level" err && fail "no mean is above 1"
+says "largest_fraction at threshold.strain = 6 %: resolution: not studied" # the end that is nearest to the level
 # No crossing is decided from all runs; the interval of a row's own runs may hold the level, which is said.
 expect 0 "$clast" find disc.yaml --level 0.97 --store end.db
 tr '\n' ' ' <out | grep -qF "no crossing in the bracket (95 %, from all $(number end.db 'select count(*) from run') runs)." || fail "how sure is not told"
@@ -126,6 +127,7 @@ assert row['kind'] == 'below' and row['narrow'] and row['at'] is row['low95'] is
 ok "no crossing for programs"
 expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6%
 prints "is above 0.5 for threshold.strain from 5 % to 6 %"
+says "largest_fraction at threshold.strain = 5 %: resolution: not studied"
 # Then a narrower interval goes on with nothing. Behind --quiet are no remarks.
 expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6% --within "1 %" --plan
 prints " runs), and its answer: the same command without --plan prints it."
