@@ -74,12 +74,15 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
   snprintf(text, size, "%s%s", words, after);
 }
 
-void charts_doubts(const struct ask_doubts *doubts, char *text, size_t size) {
+void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *text, size_t size) {
+  int64_t missing = 0, wanted;
   if (doubts->chosen && *doubts->chosen)
     text_append(text, size, "%sonly %s", *text ? "; " : "", doubts->chosen);
   if (doubts->excluded > 0)
     text_append(text, size, "%s%" PRId64 " run%s excluded", *text ? "; " : "", doubts->excluded,
                 doubts->excluded == 1 ? "" : "s");
+  if (store && ask_run_missing(store, &missing, &wanted, NULL) == STATUS_OK && missing > 0)
+    text_append(text, size, "%s%" PRId64 " of %" PRId64 " runs gave no result", *text ? "; " : "", missing, wanted);
   if (doubts->doubtful == 0)
     return;
   text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs:", *text ? "; " : "", doubts->doubtful,

@@ -46,7 +46,7 @@ static void tell_doubts(const char *fields, const struct movie *movie, char text
   if (!snapshot_read_close(file) || !known)
     return;
   ask_doubts_run(&doubts, engine, words, OUTCOME_DEFAULT, 1);
-  charts_doubts(&doubts, text, DOUBTS);
+  charts_doubts(NULL, &doubts, text, DOUBTS);
   if (!movie || movie->at + 1 == movie->count)
     uncertainty_doubts(&doubts, stderr);
 }

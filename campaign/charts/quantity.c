@@ -286,7 +286,7 @@ static status add_doubts(struct store *store, const struct ask_doubts_choice *ch
   struct ask_doubts doubts = {0};
   TRY(ask_doubts_results(store, quantities, results, error));
   TRY(ask_doubts(store, choice, results, &doubts, error));
-  charts_doubts(&doubts, caption, size);
+  charts_doubts(store, &doubts, caption, size);
   uncertainty_doubts(&doubts, stderr);
   return STATUS_OK;
 }

@@ -204,7 +204,7 @@ static void write_caption(struct store *store, const struct curves *curves, char
                     ? ". Lines: the law below the largest fragment of each run, and this fragment itself"
                     : ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
   text_append(caption, CAPTION, "%s%s", *untold ? ". No line: " : "", untold);
-  charts_doubts(&curves->doubts, caption, CAPTION);
+  charts_doubts(store, &curves->doubts, caption, CAPTION);
 }
 
 /* Bins and words of the measured spectrum. label: room for `size` bytes. A table of shares alone needs a mass to tell

@@ -689,7 +689,7 @@ status study_print_picture(const struct study *study, bool of_errors, const char
            stepped < knobs ? ""
            : of_errors     ? "how far finer settings may move the mean, all knobs together"
                            : "mean over seeds with its 95 % interval");
-  charts_doubts(&sum, caption, sizeof caption);
+  charts_doubts(NULL, &sum, caption, sizeof caption);
   const struct picture_words words = {title, caption, x, y};
   const struct sample_range range = views_range(study->quantity[0].column);
   for (size_t i = 0; i < drawing->count; i++)

@@ -422,7 +422,7 @@ status find_print_picture(const struct find *find, const char *path, const struc
   if (is_share)
     snprintf(y, sizeof y, "share of runs above the level");
   write_sentence(find, title);
-  charts_doubts(&find->doubts, caption, sizeof caption);
+  charts_doubts(NULL, &find->doubts, caption, sizeof caption);
   const struct picture_page page = charts_page(path, chart);
   const struct picture_words words = {title, caption, x, y};
   return picture_curves(&page, &words, found->kind == CROSSING_FOUND ? 4 : one ? 3 : 2, curves, error);

@@ -565,7 +565,7 @@ status fit_print_picture(const struct fit *fit, const char *path, const struct c
   if (unstudied)
     text_append(caption, sizeof caption, ", which is not known for %zu of %zu numbers and counts as 0", unstudied,
                 fit->observed->datum_count);
-  charts_doubts(&fit->all_doubts, caption, sizeof caption);
+  charts_doubts(NULL, &fit->all_doubts, caption, sizeof caption);
   const struct picture_words words = {title, caption, "predicted over measured", NULL};
   return picture_predicted(&page, &words, fit->observed->datum_count, rows, error);
 }

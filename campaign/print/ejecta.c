@@ -90,7 +90,7 @@ static status draw(struct store *store, const struct curves *curves, const struc
   char caption[1000] =
       "Mass of the target's matter that leaves at a speed or faster, mean of a run. Bands: 95 % intervals";
   char title[300], scenes[200];
-  charts_doubts(&curves->doubts, caption, sizeof caption);
+  charts_doubts(store, &curves->doubts, caption, sizeof caption);
   TRY(ask_points_scenes(store, scenes, sizeof scenes, error));
   snprintf(title, sizeof title, "Ejecta of %s", scenes);
   const struct picture_words words = {title, caption, "speed v (m/s)", "mass faster than v (kg)"};

@@ -399,7 +399,7 @@ static status print_rows(const struct points *points, const char *quantity, cons
 
 /* ---- the picture ---- */
 
-static status draw(const struct points *points, const char *quantity, const struct scaling *found,
+static status draw(struct store *store, const struct points *points, const char *quantity, const struct scaling *found,
                    const struct picture_page *page, struct error *error) {
   const struct ask_column *control = &points->axis[points->control];
   const double *value[] = {&found->value[SCALING_CRITICAL].estimate, &found->value[SCALING_NU].estimate,
@@ -438,7 +438,7 @@ static status draw(const struct points *points, const char *quantity, const stru
   snprintf(panel[1], sizeof panel[1], scaled ? "S × L^(−γ/ν)" : "Q, of the largest in Σm²");
   snprintf(caption, sizeof caption, "means with 95 %% intervals over seeds%s",
            scaled ? "" : "; not scaled: no exponents. Q crosses at a critical value");
-  charts_doubts(&points->doubts, caption, sizeof caption);
+  charts_doubts(store, &points->doubts, caption, sizeof caption);
   const struct picture_words words = {scaled ? "Collapse of the sizes" : "The sizes", caption, axis, NULL};
   return picture_collapse(page, &words, (const char *const[]){panel[0], panel[1]}, sizes, size, error);
 }
@@ -469,5 +469,5 @@ status print_scaling(struct store *store, const struct scaling_choice *choice, e
         found.runs, points.axis[points.size].word, points.dimensions, quantity);
     uncertainty_doubts(&points.doubts, stderr);
   }
-  return page ? draw(&points, quantity, &found, page, error) : STATUS_OK;
+  return page ? draw(store, &points, quantity, &found, page, error) : STATUS_OK;
 }

@@ -181,7 +181,7 @@ status print_scatter_picture(struct store *store, const struct scatter_choice *c
   const double width = scatter_width_of_all(samples.count, samples.scatter); /* or heights could not be compared */
   for (size_t i = 0; i < samples.count; i++)
     sample[i].histogram = scatter_histogram_of(&samples.scatter[i], width);
-  charts_doubts(&doubts, caption, sizeof caption);
+  charts_doubts(store, &doubts, caption, sizeof caption);
   const struct picture_words words = {"Scatter of the runs", *caption ? caption : NULL, axis, NULL};
   TRY(picture_scatter(page, &words, samples.count, sample, error));
   if (more)

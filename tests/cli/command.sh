@@ -326,6 +326,10 @@ for command in "estimates gone.db" "stats gone.db -Q x" "scatter gone.db -Q x" "
   "$clast" $command >out 2>err || [ "${command%% *}" = run ] || fail "$command"
   says "6 of 18 runs gave no result"
 done
+for picture in "plot gone.db one.png" "scatter gone.db --picture one.png"; do # so does the picture itself
+  "$clast" $picture -Q x --keep-script >out 2>err || fail "$picture"
+  grep '^caption_text' one.gp | sed "s/'\.\"\\\\n\"\.'/ /g" | grep -q "6 of 18 runs gave no result" || fail "no caption: $picture"
+done
 for point in 2 3; do
   expect 0 "$clast" compare gone.db:1 gone.db:$point -Q x
   says "3 of 6 runs gave no result"
