@@ -65,6 +65,8 @@ status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice 
 status quantity_no_values(struct store *store, const char *quantity, struct error *error);
 /* Prints a line on stderr that names the varied inputs without effect (ask_group_idle()); none: prints nothing. */
 status quantity_tell_idle(struct store *store, struct error *error);
+/* Prints a line on stderr if pooled points share seeds; none do: prints nothing. */
+void quantity_tell_shared(struct store *store, const struct ask_group_pooled *pooled);
 /* Prints a line on stderr: the meaning of the intervals, and the error of the resolution. pooled: of ask_group(); NULL:
  * nothing. */
 void quantity_tell_resolution(struct store *store, const char *name, const struct ask_group_pooled *pooled);

@@ -323,6 +323,22 @@ status quantity_tell_idle(struct store *store, struct error *error) {
   return STATUS_OK;
 }
 
+void quantity_tell_shared(struct store *store, const struct ask_group_pooled *pooled) {
+  char word[TEXT_WORD];
+  const int64_t levels = *pooled->inputs ? ask_campaign_levels(store) : 0;
+  if (levels > 0)
+    fprintf(stderr,
+            "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "
+            "interval is too narrow: `clast estimates` tells each point\n",
+            levels);
+  else if (pooled->same_seeds)
+    words_print(
+        stderr, "",
+        "clast: points share seeds: what a seed changes at all of them alike is not in the interval "
+        "(`clast scatter %s --split` tells it, from two seeds on; `independent: true` gives each point its own)",
+        text_word(store_path(store), word));
+}
+
 void quantity_tell_resolution(struct store *store, const char *name, const struct ask_group_pooled *pooled) {
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];

@@ -152,7 +152,6 @@ static void print_rivals(const struct pooled_rivals *rivals, const char *kg) {
 
 struct curves {
   const struct spectrum_choice *choice;
-  bool several, single; /* a pool has more than one point; one has one */
   size_t count, most;
   bool more; /* there are more pools than are drawn */
   int64_t point;
@@ -172,26 +171,24 @@ static void release(struct curves **curves) {
   free(*curves);
 }
 
-enum { CAPTION = 1000 };
+enum { CAPTION = 1600 };
 
 /* The meaning of axes and intervals, and the error of the resolution. */
-static void write_caption(struct store *store, const struct curves *curves, char caption[CAPTION]) {
+static status write_caption(struct store *store, const struct curves *curves, char caption[CAPTION],
+                            struct error *error) {
   static const char *const laws[2][2] = {{"F(m) ~ m^-\xce\xb2, N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)",
                                           "N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)"},
                                          {"F(L) ~ L^-(D + 1), N(>L) ~ L^-D", "N(>L) ~ L^-D"}};
   const struct spectrum_choice *choice = curves->choice;
   struct ask_resolution resolution;
-  char text[UNCERTAINTY_TEXT] = "resolution: not known";
+  struct ask_group_pooled pooled;
+  char text[UNCERTAINTY_TEXT] = "resolution: not known", intervals[600];
   if (ask_resolution(store, curves->point, "beta", &resolution, NULL) == STATUS_OK)
     uncertainty_resolution(&resolution, text);
-  snprintf(
-      caption, CAPTION,
-      "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
-      laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Error bars",
-      !curves->several ? "seeds"
-      : curves->single ? "points, of one point over seeds"
-                       : "points",
-      text);
+  TRY(ask_group_pooled(store, choice->pool.by, &pooled, error));
+  charts_intervals(&pooled, intervals, sizeof intervals);
+  snprintf(caption, CAPTION, "%s. %s: %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
+           laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Error bars", intervals, text);
   char untold[400] = "";
   for (size_t i = 0; i < curves->count; i++)
     pooled_exponent_tell(curves->curve[i].untold, untold, sizeof untold);
@@ -205,6 +202,7 @@ static void write_caption(struct store *store, const struct curves *curves, char
                     : ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
   text_append(caption, CAPTION, "%s%s", *untold ? ". No line: " : "", untold);
   charts_doubts(store, &curves->doubts, caption, CAPTION);
+  return STATUS_OK;
 }
 
 /* Bins and words of the measured spectrum. label: room for `size` bytes. A table of shares alone needs a mass to tell
@@ -249,7 +247,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
     series[count] = series_of(&curves->curve[count]);
   if (measured && measured->n)
     TRY(measured_series(curves, &form, label, sizeof label, &bins, &series[count++], error));
-  write_caption(store, curves, caption);
+  TRY(write_caption(store, curves, caption, error));
   if (measured && measured->n && !measured->single && !form.cumulative && measured->above[measured->n - 1] > 0)
     text_append(caption, CAPTION, ". Measured: the class from %.3g %s on has no upper end and is drawn only in N(>%c)",
                 spectrum_size_of(&form.size, measured->mass[measured->n - 1]),
@@ -289,8 +287,6 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
     struct curve *curve = &curves->curve[curves->count++];
     TRY(make_curve(curves->choice, with_rivals, pool, curve, error));
     curve->fit.label = curve->fit_label;
-    curves->several |= pool->points > 1;
-    curves->single |= pool->points == 1;
     ask_doubts_add(&curves->doubts, &pool->doubts);
   }
   TRY(ask_pools_end(&pools));

@@ -41,7 +41,11 @@ static status ask(struct store *store, const struct command_line *line, struct e
                        why.message);
   if (options->with)
     TRY(spectrum_curves_measured(store, options->with, &choice, &measured, error));
-  return print(store, options, &choice, line->format, error);
+  TRY(print(store, options, &choice, line->format, error));
+  struct ask_group_pooled pooled;
+  TRY(ask_group_pooled(store, options->by, &pooled, error));
+  quantity_tell_shared(store, &pooled);
+  return STATUS_OK;
 }
 
 static const struct option_row option_rows[] = {

@@ -1,6 +1,5 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/words.h"
 
 struct options {
   const char *by, *quantity;
@@ -42,7 +41,7 @@ static status warn_of_twins(struct store *store, struct error *error) {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  char name[ASK_GROUP_NAME], word[TEXT_WORD];
+  char name[ASK_GROUP_NAME];
   const char *asked = options->quantity;
   TRY(ask_quantity_main(store, name, &asked, error));
   const char *quantity = strcmp(asked, "main") == 0 ? NULL : asked;
@@ -55,18 +54,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(ask_group_changing(store, options->by, changing, error));
   if (*changing)
     fprintf(stderr, "clast: from row to row the value of %s changes, too (--by)\n", changing);
-  const int64_t levels = *pooled.inputs ? ask_campaign_levels(store) : 0;
-  if (pooled.same_seeds && levels == 0)
-    words_print(
-        stderr, "",
-        "clast: points share seeds: what a seed changes at all of them alike is not in the interval "
-        "(`clast scatter %s --split` tells it, from two seeds on; `independent: true` gives each point its own)",
-        text_word(line->arguments[0], word));
-  if (levels > 0)
-    fprintf(stderr,
-            "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "
-            "interval is too narrow: `clast estimates` tells each point\n",
-            levels);
+  quantity_tell_shared(store, &pooled);
   if (table_for_people(line->format)) {
     TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, asked, error));
     TRY(quantity_tell_idle(store, error));

@@ -85,11 +85,14 @@ static status take(struct store *store, const struct ask_pool_choice *choice, st
   return ask_pools_end(&pools);
 }
 
-static status draw(struct store *store, const struct curves *curves, const struct picture_page *page,
+static status draw(struct store *store, const char *by, const struct curves *curves, const struct picture_page *page,
                    struct error *error) {
-  char caption[1000] =
-      "Mass of the target's matter that leaves at a speed or faster, mean of a run. Bands: 95 % intervals";
-  char title[300], scenes[200];
+  struct ask_group_pooled pooled;
+  char title[300], scenes[200], intervals[600], caption[1200];
+  TRY(ask_group_pooled(store, by, &pooled, error));
+  charts_intervals(&pooled, intervals, sizeof intervals);
+  snprintf(caption, sizeof caption,
+           "Mass of the target's matter that leaves at a speed or faster, mean of a run. Bands: %s", intervals);
   charts_doubts(store, &curves->doubts, caption, sizeof caption);
   TRY(ask_points_scenes(store, scenes, sizeof scenes, error));
   snprintf(title, sizeof title, "Ejecta of %s", scenes);
@@ -115,7 +118,7 @@ status print_ejecta(struct store *store, const struct ask_pool_choice *choice, c
   if (table)
     TRY(table_end(table, error));
   if (drawing->page)
-    TRY(draw(store, curves, drawing->page, error));
+    TRY(draw(store, choice->by, curves, drawing->page, error));
   for (size_t i = 0; drawing->text && i < curves->count; i++) {
     printf("%s%s\n", i ? "\n" : "", curves->series[i].label);
     text_plot_spectrum(stdout, COLUMNS, !drawing->ascii, "v", "m/s", "mass > v", &above, &curves->series[i]);

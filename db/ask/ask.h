@@ -409,6 +409,8 @@ struct ask_group_pooled {
 };
 struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,
                         struct error *error);
+/* `pooled` of ask_group(), and of ask_pools() with the same `by`. NULL: every point is alone. */
+status ask_group_pooled(struct store *store, const char *by, struct ask_group_pooled *pooled, struct error *error);
 
 /* The varied inputs that are none of `by` and change from group to group, though in no group ("": none): the rows of
  * ask_group() differ in more than their axes, as those of two campaigns do. */

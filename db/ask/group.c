@@ -387,6 +387,15 @@ status ask_group_columns(struct store *store, const char *by, size_t most, char 
   return STATUS_OK;
 }
 
+status ask_group_pooled(struct store *store, const char *by, struct ask_group_pooled *pooled, struct error *error) {
+  struct names axes = {.count = 0};
+  *pooled = (struct ask_group_pooled){.inputs = ""};
+  if (!by)
+    return STATUS_OK;
+  TRY(resolve(store, by, "Axis", axes_sql, &axes, error));
+  return find_pooled(store, &axes, pooled, error);
+}
+
 static status find_names(struct store *store, const char *by, const char *quantities, struct names *axes,
                          struct names *results, struct ask_group_pooled *pooled, struct error *error) {
   TRY(ask_register_functions(store, error));

@@ -40,8 +40,10 @@ expect 0 "$clast" spectrum shots.db --ejecta --by impact.speed --csv
 expect 0 "$clast" spectrum shots.db --ejecta --point 2 --plot --ascii
 prints "mass > v"; prints "v [m/s]"
 ! grep -q "count" out || fail "masses over speeds have no count"
-expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg
+expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg --by '' # its points share seeds
 grep -q "speed v (m/s)" ejecta.svg || fail "no axis of speeds"
+grep -q "without what a seed changes" ejecta.svg || fail "no word of shared seeds in the caption"
+says "points share seeds: "
 expect 64 "$clast" spectrum shots.db --ejecta --cumulative
 says "are for fragments"
 expect 0 "$clast" replay shots.db 1

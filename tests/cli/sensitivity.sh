@@ -138,13 +138,18 @@ says "all points share one seed"
 expect 0 "$clast" sensitivity single.db -Q fragment_count
 tr "\n" " " <out | grep -q "at this one seed" || fail "shares of single runs of one seed"
 ! grep -Eq "scatter over seeds\. rank|of single runs\. rank" err || fail "the rest is told as the scatter over seeds"
+shared="what a seed changes at all of them alike is not in the interval"
 expect 0 "$clast" stats single.db -Q fragment_count
-says "what a seed changes at all of them alike is not in the interval"
+says "$shared"
+expect 0 "$clast" spectrum single.db --by '' --picture one.png --keep-script
+says "$shared"
+grep '^caption_text' one.gp | sed "s/'\.\"\\\\n\"\.'/ /g" | grep -q "without what a seed changes" || fail "the caption of pooled spectra"
 sed 's/per_point: 1/per_point: 1, independent: true/; s/^name: .*/name: own/' single.yaml >own.yaml
 expect 0 "$clast" run own.yaml -j 2 --quiet
 expect 0 "$clast" sensitivity own.db -Q fragment_count
 tr "\n" " " <out | grep -q "of single runs" || fail "independent seeds"
 expect 0 "$clast" stats own.db -Q fragment_count
+"$clast" spectrum own.db --by '' >out 2>>err || fail "pooled spectra"
 ! grep -q "share seeds" err || fail "independent seeds are told as shared"
 ok "seeds that points share"
 
@@ -156,4 +161,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 44
+done_after 45
