@@ -488,8 +488,8 @@ int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *want
 /* The points without a partner: "1 of 3 points of a (strain 4 %), 7 of 9 points of b"; "": none. The caller frees
  * *text, also after an error. */
 status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error *error);
-/* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. The caller
- * frees *text, also after an error. */
+/* The inputs that no side varies and that differ, with both values: "body.wall (0.03 m, 0.04 m)"; "": none. So do
+ * scenes, and the names of campaigns with one number. The caller frees *text, also after an error. */
 status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error);
 /* After the last pair. STATUS_USAGE: the sides have no point in common. */
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error);

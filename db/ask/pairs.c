@@ -336,6 +336,7 @@ enum { NAMED = 5 }; /* most inputs with values in a message */
 struct fixed {         /* of a side */
   struct scene *scene; /* of its first point */
   char *varied;        /* paths that change within it: axes of the store, and what its points differ in */
+  char *campaign;      /* name of the chosen one, or of the first of those that have it as their name */
 };
 
 static status read_fixed(const struct side *side, struct fixed *fixed, struct error *error) {
@@ -348,13 +349,14 @@ static status read_fixed(const struct side *side, struct fixed *fixed, struct er
       "WHERE "
       "point_id = (SELECT min(point_id) FROM its)), (SELECT group_concat(path, ' ') FROM (SELECT path FROM axis UNION "
       "SELECT path FROM point_input JOIN its USING (point_id) GROUP BY path HAVING count(DISTINCT value) > 1 OR "
-      "count(*) < (SELECT count(*) FROM its)))");
+      "count(*) < (SELECT count(*) FROM its))), (SELECT name FROM campaign ORDER BY campaign_id)");
   if (answer_next(&answer)) {
     TRY(scene_parse_json("stored scene", answer_text(&answer, 0), &fixed->scene, error));
     fixed->varied = strdup(answer_text(&answer, 1));
+    fixed->campaign = strdup(answer_text(&answer, 2));
   }
   TRY(answer_end(&answer));
-  return fixed->varied ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+  return fixed->varied && fixed->campaign ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
 
 /* Writes both values of an input that differs, that no side varies, and that follows from no other; counts it. */
@@ -383,8 +385,11 @@ status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error 
   size_t count = 0;
   for (int k = 0; k < 2 && !code; k++)
     code = read_fixed(&pairs->side[k], &side[k], error);
+  const char *of[2] = {pairs->side[0].choice.campaign, pairs->side[1].choice.campaign};
+  if (!code && of[0] && of[1] && !strcmp(of[0], of[1]) && strcmp(side[0].campaign, side[1].campaign) != 0)
+    fprintf(out, "campaign (%s, %s)", side[0].campaign, side[1].campaign); /* of one number */
   if (!code && strcmp(side[0].scene->name, side[1].scene->name) != 0)
-    fprintf(out, "scene (%s, %s)", side[0].scene->name, side[1].scene->name);
+    fprintf(out, "%sscene (%s, %s)", ftell(out) > 0 ? ", " : "", side[0].scene->name, side[1].scene->name);
   for (size_t i = 0; !code && side[0].scene->kind == side[1].scene->kind && i < side[0].scene->kind->inputs->count; i++)
     write_input(side, &side[0].scene->kind->inputs->rows[i], &count, out);
   if (count > NAMED)
@@ -392,6 +397,7 @@ status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error 
   for (int k = 0; k < 2; k++) {
     scene_free(side[k].scene);
     free(side[k].varied);
+    free(side[k].campaign);
   }
   return text_close(out, text) || code ? code : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
@@ -495,7 +501,7 @@ status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
                "STORE:CAMPAIGN",
                pairs->side[k].namesakes, pairs->side[k].path, pairs->side[k].choice.campaign,
                (int)strcspn(pairs->side[k].namesakes, ","), pairs->side[k].namesakes);
-  if (*a->namesakes && *b->namesakes)
+  if (*a->namesakes && strcmp(a->namesakes, b->namesakes) == 0)
     snprintf(advice, sizeof advice,
              "Campaigns %s of %.64s share a name, and so do %s of %.64s: --campaign NUMBER with the stores alone takes "
              "this one of both",

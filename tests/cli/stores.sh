@@ -269,6 +269,14 @@ one form '' '' 3
 expect 0 "$clast" run form.yaml -j 1 --quiet
 expect 0 "$clast" stats form.db --campaign form
 ! grep -q "are called" err || fail "a form is no other campaign"
+# One number is another campaign in each store; one name has other numbers.
+expect 0 "$clast" compare first.db form.db --campaign 1
+says "a and b also differ in campaign (twin, form)"
+expect 0 "$clast" merge late.db form.db third.db fourth.db
+expect 64 "$clast" compare twins.db:twin late.db:twin
+! grep -q "takes this one of both" err || fail "a number of one store alone"
+expect 0 "$clast" compare third.db:twin late.db:twin
+! grep -q "campaign (" err || fail "one name"
 
 # A changed `set` in the same store is told; the same campaign with more seeds is not.
 one changed
@@ -374,4 +382,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 145
+done_after 149
