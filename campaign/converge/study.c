@@ -259,10 +259,8 @@ static status add_finer(const struct study_ladder *ladder, const struct study_fo
   return STATUS_OK;
 }
 
-/* Does the store's study have every level of this one, with more seeds than were asked for now? Then this one would
- * only take runs away. */
-static status is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
-                         bool *smaller, struct error *error) {
+status study_is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
+                        bool *smaller, struct error *error) {
   ANSWER levels = ask_convergence_levels(store, ladder->base_point, ladder->base->kind->results_version,
                                          found->rows[0].quantity, error);
   size_t asked = 0, there = 0;
@@ -290,7 +288,7 @@ static status store_rows(const struct study *study, size_t from, size_t count, c
                                      .rows = levels,
                                      .limit = &found[i].limit};
     bool smaller = false;
-    TRY(is_smaller(ladder, &found[i], store, &smaller, error));
+    TRY(study_is_smaller(ladder, &found[i], store, &smaller, error));
     if (smaller)
       continue;
     memcpy(levels, found[i].rows, found[i].count * sizeof *levels);

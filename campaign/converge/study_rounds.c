@@ -317,7 +317,7 @@ static void tell_size(struct rounds *rounds) {
             runs > 0 ? "then " : "", (long long)all, all_time);
 }
 
-/* A study with a new level takes the place of an earlier one of the same knob, also of one with more seeds: says so. */
+/* Tells whether the study takes the place of an earlier one of the same knob that has more seeds. */
 static status tell_replaced(const struct rounds *rounds, struct store *store, struct error *error) {
   const struct study *study = rounds->study;
   for (size_t i = 0; !rounds->quiet && i < study->ladder_count; i++) {
@@ -330,11 +330,17 @@ static status tell_replaced(const struct rounds *rounds, struct store *store, st
       if (strcmp(row.knob, knob) == 0 && row.n > before)
         before = row.n;
     TRY(answer_end(&levels));
-    if (before > ladder->seeds && ladder->seeds > 0)
-      fprintf(stderr,
-              "clast: the study of %s in this store has %lld seeds, this one %lld: it takes its place only if it has "
-              "another level. --seeds %lld studies with as many\n",
-              knob, (long long)before, (long long)ladder->seeds, (long long)before);
+    if (before <= ladder->seeds || ladder->seeds == 0)
+      continue;
+    struct study_found found;
+    bool smaller;
+    study_find(study, ladder, 0, &found);
+    TRY(study_is_smaller(ladder, &found, store, &smaller, error));
+    fprintf(stderr,
+            "clast: the study of %s in this store has %lld seeds, this one %lld%s. --seeds %lld studies with as many\n",
+            knob, (long long)before, (long long)ladder->seeds,
+            smaller ? " and no other level: the store keeps that one" : ", but another level: it takes its place",
+            (long long)before);
   }
   return STATUS_OK;
 }

@@ -510,11 +510,14 @@ expect 0 "$clast" status coarse.db
 same "$(awk '/coarse grains/ { print $5, $6, $7 }' out)" "4 12 12" "points and runs of two studies with common levels"
 # A study with fewer seeds and the same levels leaves the larger one in the store; one with another level takes its place.
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm --seeds 2 --within off
-says "the study of grains in this store has 3 seeds, this one 2: it takes its place only if it has another level. --seeds 3"
+says "the study of grains in this store has 3 seeds, this one 2 and no other level: the store keeps that one. --seeds 3"
 same "$(number coarse.db "select max(n) from convergence where knob = 'grains' and base")" 3 "seeds of the study that the store keeps"
 ! grep -q "0 more runs" err || fail "nothing to do is told: $(cat err)"
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
 ! grep -q "takes its place" err || fail "a larger study replaces: $(cat err)"
+expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,4mm --seeds 2 --within off
+says "has 3 seeds, this one 2, but another level: it takes its place. --seeds 3"
+same "$(number coarse.db "select max(n) from convergence where knob = 'grains' and base")" 2 "seeds of the study that took its place"
 # A study of several points names each of them, for people and for programs.
 printf 'name: each\nscene: disc-explosion\nset: {body.diameter: 6 cm, stop.end_time: 0.2 ms}\nvary: {threshold.strain: [1 %%, 3 %%]}\nstore: each.db\n' >each.yaml
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
@@ -634,4 +637,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 163
+done_after 165
