@@ -17,9 +17,13 @@ int sample_descending(const void *a, const void *b) {
 }
 
 double sample_student(size_t n, double level) {
-  if (n < 2 || !(level > 0 && level < 1))
+  return sample_student_of((double)n - 1, level);
+}
+
+double sample_student_of(double freedom, double level) {
+  if (!(freedom > 0 && level > 0 && level < 1))
     return NAN;
-  return gsl_cdf_tdist_Pinv(0.5 + level / 2, (double)(n - 1));
+  return gsl_cdf_tdist_Pinv(0.5 + level / 2, freedom);
 }
 
 double sample_scale(double largest) {
@@ -106,6 +110,60 @@ void sample_of_share(struct sample_summary *summary, double level) {
   summary->weak = (summary->n < SAMPLE_NARROW_RUNS && deviation < SAMPLE_NARROW * far) ||
                   (summary->n < SAMPLE_EDGE_RUNS && deviation < SAMPLE_EDGE * far &&
                    deviation > SAMPLE_EDGE_SKEW * near);
+}
+
+static int by_seed(const void *a, const void *b) {
+  const struct sample_of_seed *x = a, *y = b;
+  if (x->seed != y->seed)
+    return x->seed > y->seed ? 1 : -1;
+  return sample_ascending(&x->value, &y->value); /* one order of sums, whatever the sort does */
+}
+
+bool sample_crossed(size_t points, const size_t *first, const struct sample_of_seed *values,
+                    struct sample_crossed *out) {
+  struct sample_moments means = {.n = 0};
+  OWNED struct sample_of_seed *parts = malloc((first[points] + 1) * sizeof *parts);
+  size_t n = 0;
+  *out = (struct sample_crossed){NAN, NAN};
+  if (!parts)
+    return false;
+  for (size_t p = 0; p < points; p++) {
+    const double runs = (double)(first[p + 1] - first[p]);
+    double mean = 0;
+    for (size_t i = first[p]; i < first[p + 1]; i++)
+      mean += values[i].value;
+    mean /= runs;
+    sample_add(&means, mean);
+    for (size_t i = first[p]; runs > 1 && i < first[p + 1]; i++)
+      parts[n++] = (struct sample_of_seed){values[i].seed, (values[i].value - mean) / sqrt(runs * (runs - 1))};
+  }
+  const struct sample_summary summary = sample_summarise_moments(&means, 0.95);
+  const double count = (double)points, deviation = summary.standard_deviation;
+  if (points < 2 || isnan(deviation))
+    return true;
+  double largest = 0, together = 0, pairs = 0, seeds = 0;
+  for (size_t i = 0; i < n; i++)
+    largest = fmax(largest, fabs(parts[i].value));
+  qsort(parts, n, sizeof *parts, by_seed);
+  for (size_t i = 0, next; i < n && largest > 0; i = next) {
+    double sum = 0, squares = 0;
+    for (next = i; next < n && parts[next].seed == parts[i].seed; next++) {
+      sum += parts[next].value / largest;
+      squares += parts[next].value / largest * (parts[next].value / largest);
+    }
+    together += sum * sum;
+    pairs += next > i + 1 ? sum * sum - squares : 0;
+    seeds += next > i + 1;
+  }
+  *out = (struct sample_crossed){count, deviation};
+  if (!(pairs > SAMPLE_ROUNDING * together))
+    return true;
+  const double of_points = deviation / largest * (deviation / largest) / count, of_seeds = together / (count * count);
+  const double variance = of_points + pairs / (count * (count - 1));
+  const double freedom = variance * variance /
+                         (of_points * of_points / (count - 1) + of_seeds * of_seeds / fmax(1, seeds - 1));
+  *out = (struct sample_crossed){freedom + 1, largest * sqrt(variance * (freedom + 1))};
+  return true;
 }
 
 double sample_deviation_factor(double freedom) {

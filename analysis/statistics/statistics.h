@@ -94,6 +94,30 @@ enum { SAMPLE_NARROW_RUNS = 40, SAMPLE_EDGE_RUNS = 20 };
  * NaN for n < 2 or a level outside (0, 1). */
 double sample_student(size_t n, double level);
 
+/* The same with any degrees of freedom above 0, also broken ones. */
+double sample_student_of(double freedom, double level);
+
+/* The mean of points whose runs share seeds. A seed that acts at all points alike moves all their means together: no
+ * number of points averages it out, and the scatter between the points does not show it. With mean y_p of n_p runs at P
+ * points, and r = y - y_p of each run,
+ *     var(mean) = var(y_p) / P + C / (P (P - 1)),  C = sum over pairs p != q and their common seeds of
+ *                 r_ps r_qs / sqrt(n_p (n_p - 1) n_q (n_q - 1)),
+ * which is unbiased for points and seeds that are drawn independently, each with effects of its own (random effects,
+ * crossed). C below 0 counts as 0. Degrees of freedom are Satterthwaite's (1946, doi 10.2307/3002019), from both
+ * scatters. Points of one run tell nothing of the seeds: C leaves them out. */
+struct sample_crossed {
+  double units;     /* degrees of freedom + 1. The number of points when C is 0 */
+  double deviation; /* sqrt(units var(mean)): the half width is sample_student_of(units - 1) deviation / sqrt(units) */
+};
+struct sample_of_seed {
+  int64_t seed;
+  double value;
+};
+/* Point p has values[first[p]] ... values[first[p + 1] - 1], at least one. NaN for fewer than two points. False: no
+ * memory. */
+bool sample_crossed(size_t points, const size_t *first, const struct sample_of_seed *values,
+                    struct sample_crossed *out);
+
 /* Interval of a statistic of many runs, such as an exponent, by the jackknife over runs: leave out one run after
  * another and measure how far the statistic moves; then use Student's t, whose degrees of freedom are the number of
  * runs minus one (Tukey 1958). The runs are independent, the fragments of one run are not (their masses sum to the

@@ -59,7 +59,7 @@ void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t 
   charts_labels(pooled->inputs, names, sizeof names);
   snprintf(text, size, "95 %% intervals over %s%s%s%s", *names ? "points that differ in " : "seeds", names,
            *names && pooled->single ? " (of a mark of one point: over seeds)" : "",
-           *names && pooled->same_seeds ? ", without what a seed changes at all points alike" : "");
+           *names && pooled->lacks_seeds ? ", without what a seed changes at all points alike" : "");
 }
 
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size) {

@@ -317,26 +317,23 @@ status quantity_tell_idle(struct store *store, struct error *error) {
   if (*idle)
     words_print(stderr, "",
                 "clast: no effect in these runs: %s (runs that differ in it alone have the same results, to the last "
-                "bit). Where points are pooled over it, copies count as points of their own, and the interval is too "
+                "bit). Where points are pooled over it and others, copies count as points of their own, and the "
+                "interval is too "
                 "narrow: --where chooses one value",
                 idle);
   return STATUS_OK;
 }
 
 void quantity_tell_shared(struct store *store, const struct ask_group_pooled *pooled) {
-  char word[TEXT_WORD];
   const int64_t levels = *pooled->inputs ? ask_campaign_levels(store) : 0;
   if (levels > 0)
     fprintf(stderr,
-            "clast: %" PRId64 " of these points are of studies and searches. Points of one study share seeds, so the "
-            "interval is too narrow: `clast estimates` tells each point\n",
+            "clast: %" PRId64 " of these points are of studies and searches: `clast estimates` tells each point\n",
             levels);
-  else if (pooled->same_seeds)
-    words_print(
-        stderr, "",
-        "clast: points share seeds: what a seed changes at all of them alike is not in the interval "
-        "(`clast scatter %s --split` tells it, from two seeds on; `independent: true` gives each point its own)",
-        text_word(store_path(store), word));
+  if (pooled->lacks_seeds)
+    words_print(stderr, "",
+                "clast: points share seeds: what a seed changes at all of them alike is not in the interval (that of a "
+                "mean has it if every point has two seeds or more; `independent: true` gives each point its own)");
 }
 
 void quantity_tell_resolution(struct store *store, const char *name, const struct ask_group_pooled *pooled) {

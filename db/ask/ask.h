@@ -396,7 +396,7 @@ bool ask_specimens_next(struct answer *answer, const struct ask_specimens_quanti
  * each quantity the number of its values in the mean (_n: without withheld ones) and of runs in doubt (_doubtful); and
  * `doubts`, the words of these runs. A group of one point is a sample of runs (seeds). A group of several points pools
  * over other inputs: its points are the units, each with the mean of its runs, and the interval is that of a mean over
- * such points; the scatter between points includes that of the seeds. `pooled` names these inputs.
+ * such points and over seeds, also where points share seeds (sample_crossed()). `pooled` names these inputs.
  *
  * `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k"); "" pools everything. `quantities`:
  * comma-separated result columns or unique suffixes; NULL = the main ones. Results of different results_version are
@@ -405,11 +405,11 @@ enum { ASK_GROUP_POOLED = 512 };
 struct ask_group_pooled {
   char inputs[ASK_GROUP_POOLED]; /* "threshold.angle, material.m"; "": every group has one point */
   bool single;                   /* a group has one point: its interval is over seeds, also where others pool */
-  bool same_seeds;               /* points of a group share seeds: what a seed does to all is not in the interval */
+  bool lacks_seeds;              /* the interval lacks what a seed changes at all points of a group alike */
 };
 struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,
                         struct error *error);
-/* `pooled` of ask_group(), and of ask_pools() with the same `by`. NULL: every point is alone. */
+/* The same of ask_pools(), whose intervals of counts lack the shared seeds. by NULL: every point is alone. */
 status ask_group_pooled(struct store *store, const char *by, struct ask_group_pooled *pooled, struct error *error);
 
 /* The varied inputs that are none of `by` and change from group to group, though in no group ("": none): the rows of

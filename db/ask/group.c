@@ -208,8 +208,9 @@ static void write_died(FILE *out, const struct names *axes, size_t quantities) {
         out);
 }
 
-/* One row per point of a group: its number of runs and, for quantity N, the number of values rN, mean pN and standard
- * deviation oN. Rows are ordered so that the sums have the same bits for any order in which the runs finished. */
+/* One row per point of a group: its number of runs and, for quantity N, the number of values rN, mean pN, standard
+ * deviation oN and values with seeds sN. Rows are ordered so that the sums have the same bits for any order in which
+ * the runs finished. */
 static void write_points(FILE *out, const struct names *axes, const struct names *quantities) {
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
@@ -220,7 +221,8 @@ static void write_points(FILE *out, const struct names *axes, const struct names
     const char *q = quantities->name[i];
     fprintf(out,
             ",\n  count(iif(counts, \"%1$s\", NULL)) AS r%2$zu, mean(iif(counts, \"%1$s\", NULL)) AS p%2$zu, "
-            "stdev(iif(counts, \"%1$s\", NULL)) AS o%2$zu, count(iif(counts, w%2$zu, NULL)) AS b%2$zu, "
+            "stdev(iif(counts, \"%1$s\", NULL)) AS o%2$zu, seeds(seed, iif(counts, \"%1$s\", NULL)) AS s%2$zu, "
+            "count(iif(counts, w%2$zu, NULL)) AS b%2$zu, "
             "words(iif(counts, w%2$zu, NULL)) AS w%2$zu",
             q, i);
   }
@@ -242,8 +244,8 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   fputs(" USING (point_id, results_version)\nGROUP BY ", out);
 }
 
-/* The units of a group are the runs of its only point, or the means of its points. The resolution error of a group is
- * the largest one among its points. */
+/* The units of a group are the runs of its only point, or the means of its points (sample_crossed()). The resolution
+ * error of a group is the largest one among its points. */
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL, units[32], quantile[32];
   FILE *out = text_open(&sql);
@@ -253,7 +255,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   for (size_t i = 0; i < quantities->count; i++) {
     snprintf(units, sizeof units, "u%zu", i);
     const struct sample_range range = views_range(quantities->name[i]);
-    views_statistics_columns(i, quantities->name[i], units, &range, out);
+    views_statistics_columns(i, quantities->name[i], "o", units, &range, out);
   }
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out, ",\n  r%1$zu AS \"%2$s_n\", b%1$zu AS \"%2$s_doubtful\"", i, quantities->name[i]);
@@ -269,9 +271,9 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   fputs("\nFROM (SELECT *", out);
   for (size_t i = 0; i < quantities->count; i++) {
     snprintf(units, sizeof units, "(u%zu - 1)", i);
-    fputs(",\n  ", out);
-    views_statistics_student(units, out);
-    fprintf(out, " AS t%zu", i);
+    fputs(",\n  ifnull(", out);
+    views_statistics_student(units, out); /* whole degrees of freedom: the bits of the view `points` */
+    fprintf(out, ", student(u%1$zu)) AS t%1$zu", i);
   }
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
@@ -280,8 +282,9 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
         out);
   for (size_t i = 0; i < quantities->count; i++) { /* in parts, as in views_statistics_columns() */
     fprintf(out,
-            ",\n  mean(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, count(p%1$zu), sum(r%1$zu)) AS u%1$zu, "
-            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu,\n  ",
+            ",\n  mean(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, crossed_units(s%1$zu), sum(r%1$zu)) AS u%1$zu, "
+            "iif(count(p%1$zu) > 1, crossed_sd(s%1$zu), max(o%1$zu)) AS d%1$zu, "
+            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS o%1$zu,\n  ",
             i);
     fprintf(out,
             "iif(count(e%1$zu) = count(*), max(e%1$zu), NULL) AS e%1$zu, CASE WHEN count(e%1$zu) < count(*) THEN "
@@ -306,7 +309,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
 static char *grouped_sql(const struct names *axes) {
   char *sql = NULL;
   FILE *out = text_open(&sql);
-  fputs("WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY ", out);
+  fputs("WITH grouped AS (SELECT point_id, n, dense_rank() OVER (ORDER BY ", out);
   write_names(out, axes);
   fputs("engine, results_version) AS grp FROM points WHERE n > 0)", out);
   return text_close_small(out, &sql);
@@ -324,8 +327,9 @@ static status take_first_names(struct answer *answer, char list[ASK_GROUP_POOLED
 }
 
 /* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
- * all others. The first NAMED are named. */
-static status find_pooled(struct store *store, const struct names *axes, struct ask_group_pooled *pooled,
+ * all others. The first NAMED are named. means: of means over points (sample_crossed()), which lack the seeds of points
+ * of one run alone. */
+static status find_pooled(struct store *store, const struct names *axes, bool means, struct ask_group_pooled *pooled,
                           struct error *error) {
   OWNED char *grouped = grouped_sql(axes);
   ANSWER answer = answer_to(
@@ -342,14 +346,16 @@ static status find_pooled(struct store *store, const struct names *axes, struct 
       "grouped h WHERE h.grp = g.grp)",
       grouped);
   TRY(take_first_names(&answer, pooled->inputs));
-  ANSWER kinds = answer_to(store, error,
-                           "%s SELECT total(points = 1), total(shared) FROM (SELECT count(*) AS points, count(seed) > "
-                           "count(DISTINCT seed) AS shared FROM (SELECT grp, (SELECT seed FROM run r WHERE r.point_id "
-                           "= grouped.point_id AND replicate = 0 LIMIT 1) AS seed FROM grouped) GROUP BY grp)",
-                           grouped);
+  ANSWER kinds =
+      answer_to(store, error,
+                "%s SELECT total(points = 1), total(shared) FROM (SELECT count(*) AS points, count(seed) > "
+                "count(DISTINCT seed) AND (%d OR min(n) = 1) AS shared FROM (SELECT grp, n, (SELECT seed FROM run r "
+                "WHERE r.point_id = grouped.point_id AND replicate = 0 LIMIT 1) AS seed FROM grouped) GROUP "
+                "BY grp)",
+                grouped, !means);
   if (answer_next(&kinds)) {
     pooled->single = answer_real(&kinds, 0) > 0;
-    pooled->same_seeds = answer_real(&kinds, 1) > 0;
+    pooled->lacks_seeds = answer_real(&kinds, 1) > 0;
   }
   return answer_end(&kinds);
 }
@@ -393,7 +399,7 @@ status ask_group_pooled(struct store *store, const char *by, struct ask_group_po
   if (!by)
     return STATUS_OK;
   TRY(resolve(store, by, "Axis", axes_sql, &axes, error));
-  return find_pooled(store, &axes, pooled, error);
+  return find_pooled(store, &axes, false, pooled, error);
 }
 
 static status find_names(struct store *store, const char *by, const char *quantities, struct names *axes,
@@ -402,7 +408,7 @@ static status find_names(struct store *store, const char *by, const char *quanti
   TRY(resolve(store, by, "Axis", axes_sql, axes, error));
   if (quantities)
     TRY(resolve(store, quantities, "Quantity", quantities_sql, results, error));
-  return find_pooled(store, axes, pooled, error);
+  return find_pooled(store, axes, true, pooled, error);
 }
 
 struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,

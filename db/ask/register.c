@@ -42,6 +42,89 @@ static void pooled_hw95(sqlite3_context *context, int count, sqlite3_value **val
                                                    sqlite3_value_double(values[1]), sqlite3_value_double(values[2])));
 }
 
+/* seeds(seed, value): the values of a point's runs with their seeds, for crossed_...(). */
+struct values {
+  struct sample_of_seed *value;
+  size_t n, capacity;
+};
+
+static void values_take(sqlite3_context *context, struct values *to, size_t n, const struct sample_of_seed *value) {
+  if (!grow_room(&to->value, &to->capacity, to->n + n, sizeof *to->value)) {
+    sqlite3_result_error_nomem(context);
+    return;
+  }
+  memcpy(to->value + to->n, value, n * sizeof *value);
+  to->n += n;
+}
+
+static void seeds_step(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  struct values *all = sqlite3_aggregate_context(context, sizeof *all);
+  if (all && sqlite3_value_type(values[1]) != SQLITE_NULL)
+    values_take(context, all, 1,
+                &(struct sample_of_seed){sqlite3_value_int64(values[0]), sqlite3_value_double(values[1])});
+}
+
+static void seeds_final(sqlite3_context *context) {
+  const struct values *all = sqlite3_aggregate_context(context, 0);
+  if (all && all->n > 0 && all->n < INT32_MAX / sizeof *all->value)
+    sqlite3_result_blob(context, all->value, (int)(all->n * sizeof *all->value), SQLITE_TRANSIENT);
+  if (all)
+    free(all->value);
+}
+
+/* crossed_units(seeds), crossed_sd(seeds): sample_crossed() of the points of a group. */
+struct points {
+  struct values values;
+  size_t *first; /* of each point, and the end */
+  size_t n, capacity;
+};
+
+static void crossed_step(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  struct points *all = sqlite3_aggregate_context(context, sizeof *all);
+  if (!all || sqlite3_value_type(values[0]) != SQLITE_BLOB)
+    return;
+  if (!grow_room(&all->first, &all->capacity, all->n + 2, sizeof *all->first)) {
+    sqlite3_result_error_nomem(context);
+    return;
+  }
+  all->first[all->n++] = all->values.n;
+  values_take(context, &all->values, (size_t)sqlite3_value_bytes(values[0]) / sizeof(struct sample_of_seed),
+              sqlite3_value_blob(values[0]));
+  all->first[all->n] = all->values.n;
+}
+
+static struct sample_crossed crossed_end(sqlite3_context *context) {
+  struct sample_crossed crossed = {NAN, NAN};
+  struct points *all = sqlite3_aggregate_context(context, 0);
+  if (!all)
+    return crossed;
+  if (all->n > 0 && !sample_crossed(all->n, all->first, all->values.value, &crossed))
+    sqlite3_result_error_nomem(context);
+  free(all->values.value);
+  free(all->first);
+  return crossed;
+}
+
+static void crossed_units_final(sqlite3_context *context) {
+  const struct sample_crossed crossed = crossed_end(context);
+  if (crossed.units > 0)
+    sqlite3_result_double(context, crossed.units);
+}
+
+static void crossed_sd_final(sqlite3_context *context) {
+  const struct sample_crossed crossed = crossed_end(context);
+  if (crossed.units > 0)
+    sqlite3_result_double(context, crossed.deviation);
+}
+
+/* student(units): sample_student_of() at 95 %. */
+static void student(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  sqlite3_result_double(context, sample_student_of(sqlite3_value_double(values[0]) - 1, 0.95));
+}
+
 struct sample {
   double *values;
   size_t n, capacity;
@@ -176,6 +259,10 @@ static const struct {
     {"mean", 1, NULL, mean_step, mean_final},
     {"stdev", 1, NULL, mean_step, stdev_final},
     {"median", 1, NULL, median_step, median_final},
+    {"seeds", 2, NULL, seeds_step, seeds_final},
+    {"crossed_units", 1, NULL, crossed_step, crossed_units_final},
+    {"crossed_sd", 1, NULL, crossed_step, crossed_sd_final},
+    {"student", 1, student, NULL, NULL},
     {"hist_sum", 1, NULL, hist_sum_step, hist_sum_final},
     {"pooled_hw95", 3, pooled_hw95, NULL, NULL},
     {"withheld", 3, withheld, NULL, NULL},

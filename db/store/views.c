@@ -75,11 +75,12 @@ void views_statistics_half_width(size_t i, const char *n, const char *t, const s
   fprintf(out, ", NULL) AS h%zu", i);
 }
 
-void views_statistics_columns(size_t i, const char *name, const char *n, const struct sample_range *range, FILE *out) {
+void views_statistics_columns(size_t i, const char *name, const char *sd, const char *n,
+                              const struct sample_range *range, FILE *out) {
   fprintf(out,
-          ",\n  m%1$zu AS \"%2$s_mean\", d%1$zu AS \"%2$s_sd\", d%1$zu / sqrt(%3$s) AS \"%2$s_se\", h%1$zu AS "
+          ",\n  m%1$zu AS \"%2$s_mean\", %4$s%1$zu AS \"%2$s_sd\", d%1$zu / sqrt(%3$s) AS \"%2$s_se\", h%1$zu AS "
           "\"%2$s_hw95\",\n  ",
-          i, name, n);
+          i, name, n, sd);
   if (range->share) { /* in parts: fprintf() of 14 values and more asks for memory, and says nothing without it */
     fprintf(out,
             "iif(h%1$zu IS NULL, iif(%3$s > 1, m%1$zu * pow(0.05, 1.0 / %3$s), NULL), max(m%1$zu - h%1$zu, 0.0)) AS "
@@ -386,7 +387,7 @@ static void write_points(struct view *view) {
     char n[32];
     snprintf(n, sizeof n, "n%zu", i);
     const struct sample_range range = views_range(names[i]);
-    views_statistics_columns(i, names[i], n, &range, out);
+    views_statistics_columns(i, names[i], "d", n, &range, out);
   }
   fputs("\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
         "  LEFT JOIN width s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"

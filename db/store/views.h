@@ -65,8 +65,9 @@ void views_statistics_write(size_t count, const char *const *names, FILE *out);
  * values and of Student's quantile. range: sample_in_range(). NULL: the values are equal. */
 void views_statistics_half_width(size_t i, const char *n, const char *t, const struct sample_range *range, FILE *out);
 /* SQL of the columns NAME_mean, _sd, _se, _hw95, _low95, _high95, _weak, _resolution and _resolution_verdict, with a
- * comma before each, from mN, dN, hN, eN and vN. */
-void views_statistics_columns(size_t i, const char *name, const char *n, const struct sample_range *range, FILE *out);
+ * comma before each, from mN, dN, hN, eN and vN. sd: "d", or another letter whose column is _sd. */
+void views_statistics_columns(size_t i, const char *name, const char *sd, const char *n,
+                              const struct sample_range *range, FILE *out);
 
 /* The values that a column of the view runs can have; of a name that results of several engines have, those of all. */
 struct sample_range views_range(const char *column);

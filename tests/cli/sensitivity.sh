@@ -153,6 +153,26 @@ expect 0 "$clast" stats own.db -Q fragment_count
 ! grep -q "share seeds" err || fail "independent seeds are told as shared"
 ok "seeds that points share"
 
+# Pooled over an input that changes nothing: the interval is that of the seeds at one of its values. The points' means are
+# all equal, and no number of points makes it narrower.
+printf 'engine: toy\n' >stick.yaml
+printf '%s\n' 'name: alike' 'scene: stick.yaml' 'vary: {stick.angle: [1 deg, 2 deg, 3 deg]}' 'seeds: 5' >alike.yaml
+expect 0 "$toy" run alike.yaml --quiet
+expect 0 "$toy" stats alike.db -Q largest_fraction --csv --where 'stick_angle < 0.02'
+cut -d, -f8- out >one
+expect 0 "$toy" stats alike.db -Q largest_fraction --csv
+python - <<'PY'
+import csv
+one, pooled = (list(csv.DictReader(open(name)))[0] for name in ("one", "out"))
+for name in "mean", "se", "hw95":
+    a, b = (float(row["largest_fraction_" + name]) for row in (one, pooled))
+    assert a > 0 and abs(b / a - 1) < 1e-12, (name, a, b)
+assert float(pooled["largest_fraction_sd"]) < 1e-12
+PY
+expect 0 "$toy" stats alike.db -Q largest_fraction
+! grep -q "share seeds" err || fail "the interval of a mean has the seeds' part"
+ok "seeds of points that are alike"
+
 expect 64 "$clast" sensitivity ask.db sweep.yaml
 says "are no design for sensitivity indices"
 expect 64 "$clast" sensitivity sweep.yaml new.yaml --design grid
@@ -161,4 +181,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 45
+done_after 50

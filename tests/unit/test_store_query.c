@@ -139,7 +139,7 @@ static void interval_is_that_in_c(void **state) {
     fputs("SELECT format('%.17g,%.17g,%.17g,%d,%s', coalesce(q_hw95, 'nan'), q_low95, q_high95, q_weak, "
           "typeof(q_hw95) || typeof(q_low95) || typeof(q_high95)) FROM (SELECT 0",
           out);
-    views_statistics_columns(0, "q", "n", range, out);
+    views_statistics_columns(0, "q", "d", "n", range, out);
     fputs(" FROM (SELECT *, ", out);
     views_statistics_half_width(0, "n", "t", range, out);
     fprintf(out, " FROM (SELECT %.17g AS m0, %s%.17g%s AS d0, NULL AS e0, NULL AS v0, %zu AS n, %.17g AS t)))", mean,
@@ -257,10 +257,25 @@ static void groups_say_what_they_pool(void **state) {
   double scatter = fabs(first - second) / sqrt(2); /* of the means of two points */
   assert_true(scatter > 1e-3);
   const double mean = (first + second) / 2;
-  char expected[200]; /* the mean of `hardest` is 6 at every point: no scatter, and no interval */
+  static struct fixture_run f;
+  struct fixture_inputs inputs;
+  struct sample_of_seed values[2][2 * RUNS];
+  for (int i = 0; i < 2 * RUNS; i++) {
+    struct scene scene = fixture_scene(&inputs, 6, i < RUNS ? 1e30 : 1e31);
+    fixture_fill(&f, &scene, 0, 0, i % RUNS, FIXTURE_FRAGMENTS);
+    values[0][i] = (struct sample_of_seed){i % RUNS, f.result.hardest};
+    values[1][i] = (struct sample_of_seed){i % RUNS, largest(&f)};
+  }
+  struct sample_crossed of[2];
+  for (int i = 0; i < 2; i++)
+    assert_true(sample_crossed(2, (const size_t[]){0, RUNS, 2 * RUNS}, values[i], &of[i]));
+  const double se = of[0].deviation / sqrt(of[0].units), wide = se * sample_student(RUNS, 0.95);
+  assert_true(se > 0.1); /* the mean of `hardest` is 6 at every point: no scatter of points, but that of the seeds */
+  assert_near(of[0].units, RUNS, 1e-9);
+  char expected[200];
   snprintf(expected, sizeof expected,
-           "\n6,fake,3,2,50,0,0,0,6,0,0,nan,nan,nan,nan,nan,not-studied,%.6g,%.6g,%.6g,%.6g,", mean, scatter,
-           scatter / sqrt(2), 12.706204736174 * scatter / sqrt(2) * (1 + SAMPLE_SKEW * scatter / mean));
+           "\n6,fake,3,2,50,0,0,0,6,0,%.6g,%.6g,%.6g,%.6g,nan,nan,not-studied,%.6g,%.6g,%.6g,", se, wide, 6 - wide,
+           6 + wide, mean, scatter, of[1].deviation / sqrt(of[1].units));
   if (!strstr(rows.text, expected))
     fail_msg("%s not in %s", expected, rows.text);
   assert_non_null(
@@ -272,10 +287,10 @@ static void groups_say_what_they_pool(void **state) {
   assert_int_equal(rows.count, M * K);
   assert_string_equal(pooled.inputs, "");
   assert_true(pooled.single);
-  assert_false(pooled.same_seeds);
+  assert_false(pooled.lacks_seeds);
   OK(keep(ask_group(store, "", "broken_count", &pooled, &error), &rows));
   assert_int_equal(rows.count, 1);
-  assert_true(pooled.same_seeds);
+  assert_false(pooled.lacks_seeds);
   assert_string_equal(pooled.inputs, "material.k, material.m");
   assert_int_equal(keep(ask_group(store, "q", NULL, &pooled, &error), &rows), STATUS_USAGE);
   assert_non_null(strstr(error.message, "material.m"));

@@ -182,12 +182,100 @@ static void infinite_values_have_no_interval(void **state) {
   assert_true(isnan(summary.standard_deviation) && isnan(summary.standard_error) && isnan(summary.half_width));
 }
 
+static void crossed_by_hand(void **state) {
+  (void)state;
+  struct sample_crossed c;
+  /* Means 2 and 5, of points 2.25. Parts -+ 1/sqrt(2) and -+ 3/sqrt(2): seeds -+ 4/sqrt(2), of seeds 16/4; pairs 6/2.
+   */
+  const struct sample_of_seed two[] = {{9, 3}, {5, 1}, {5, 2}, {9, 8}};
+  assert_true(sample_crossed(2, (const size_t[]){0, 2, 4}, two, &c));
+  const double units = 5.25 * 5.25 / (2.25 * 2.25 + 16) + 1;
+  assert_true(fabs(c.units / units - 1) < 1e-14 && fabs(c.deviation / sqrt(5.25 * units) - 1) < 1e-14);
+  /* The same seeds the other way round: no pair has a common part, so as without seeds. */
+  const struct sample_of_seed against[] = {{5, 1}, {9, 3}, {5, 8}, {9, 2}};
+  assert_true(sample_crossed(2, (const size_t[]){0, 2, 4}, against, &c));
+  assert_true(c.units == 2 && fabs(c.deviation / sqrt(4.5) - 1) < 1e-15);
+  /* A third point of one run, and seeds of their own: the same. An input without effect: points as one, seeds remain.
+   */
+  const struct sample_of_seed own[] = {{1, 1}, {2, 3}, {3, 2}, {4, 8}, {1, 5}};
+  assert_true(sample_crossed(3, (const size_t[]){0, 2, 4, 5}, own, &c));
+  assert_true(c.units == 3 && fabs(c.deviation / sqrt(3) - 1) < 1e-15);
+  const struct sample_of_seed idle[] = {{1, 1}, {2, 3}, {3, 8}, {1, 1}, {2, 3}, {3, 8}};
+  assert_true(sample_crossed(2, (const size_t[]){0, 3, 6}, idle, &c));
+  assert_true(fabs(c.units - 3) < 1e-14 && fabs(c.deviation / sqrt(13) - 1) < 1e-14);
+  assert_true(sample_crossed(1, (const size_t[]){0, 2}, two, &c) && isnan(c.units));
+  assert_true(sample_crossed(0, (const size_t[]){0}, two, &c) && isnan(c.units));
+}
+
+/* Points and seeds act by themselves and together: y = a_p + b_s + e_ps. Every third seed may lack every second point.
+ */
+static double crossed_coverage(size_t points, size_t seeds, double a, double b, double e, bool gaps, bool skew,
+                               double *old) {
+  enum { TRIALS = 1000, MOST = 1000 };
+  struct sample_of_seed values[MOST];
+  size_t first[101], held = 0, held_without = 0;
+  for (uint64_t trial = 0; trial < TRIALS; trial++) {
+    struct sample_moments means = {0};
+    size_t n = 0;
+    for (size_t p = 0; p < points; p++) {
+      double sum = 0;
+      first[p] = n;
+      for (size_t s = 0; s < seeds; s++)
+        if (!gaps || p % 2 == 0 || s % 3 > 0) {
+          const double of_seed = skew ? -log(1 - random_draw(32, 1, trial, s)) - 1 : normal(2, trial, s);
+          values[n] = (struct sample_of_seed){(int64_t)s, a * normal(3, trial, p) + b * of_seed +
+                                                              e * normal(4, trial, p * 100 + s)};
+          sum += values[n++].value;
+        }
+      sample_add(&means, sum / (double)(n - first[p]));
+    }
+    first[points] = n;
+    struct sample_crossed c;
+    assert_true(n <= MOST && sample_crossed(points, first, values, &c));
+    const struct sample_summary alone = sample_summarise_moments(&means, 0.95);
+    held += fabs(alone.mean) <= sample_student_of(c.units - 1, 0.95) * c.deviation / sqrt(c.units);
+    held_without += fabs(alone.mean) <= alone.half_width;
+  }
+  *old = (double)held_without / TRIALS;
+  return (double)held / TRIALS;
+}
+
+static void crossed_keeps_its_level(void **state) {
+  (void)state;
+  static const struct {
+    size_t points, seeds;
+    double a, b, e;
+    bool gaps, skew;
+    double least;
+  } laws[] = {
+      {100, 5, 1, 0, 0.5, false, false, 0.94},    {100, 5, 1, 0.5, 0.1, false, false, 0.93},
+      {100, 10, 0.1, 1, 0.3, false, false, 0.94}, {9, 3, 1, 1, 1, false, false, 0.94},
+      {9, 10, 0.1, 0, 1, false, false, 0.94},     {4, 3, 1, 0.5, 0.1, false, false, 0.94},
+      {9, 9, 0.3, 1, 0.5, true, false, 0.93},     {20, 6, 0.3, 0.3, 0.3, true, false, 0.93},
+      {9, 10, 0.3, 1, 0.3, false, true, 0.87},    {100, 2, 1, 0.5, 0.1, false, false, 0.86},
+  };
+  for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+    double old;
+    const double share = crossed_coverage(laws[i].points, laws[i].seeds, laws[i].a, laws[i].b, laws[i].e, laws[i].gaps,
+                                          laws[i].skew, &old);
+    printf("  %3zu points, %2zu seeds, scatter %.1f, %.1f, %.1f%s%s: coverage %.3f, without seeds %.3f\n",
+           laws[i].points, laws[i].seeds, laws[i].a, laws[i].b, laws[i].e, laws[i].gaps ? ", gaps" : "",
+           laws[i].skew ? ", skew" : "", share, old);
+    assert_true(share > laws[i].least - 4 * sqrt(0.95 * 0.05 / 1000));
+  }
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(infinite_values_have_no_interval), cmocka_unit_test(summaries_are_exact),
-      cmocka_unit_test(stopping_keeps_its_level),         cmocka_unit_test(stopping_waits),
-      cmocka_unit_test(jackknife_of_a_mean_is_students),  cmocka_unit_test(jackknife_refuses_what_it_cannot_tell),
+      cmocka_unit_test(infinite_values_have_no_interval),
+      cmocka_unit_test(summaries_are_exact),
+      cmocka_unit_test(stopping_keeps_its_level),
+      cmocka_unit_test(stopping_waits),
+      cmocka_unit_test(jackknife_of_a_mean_is_students),
+      cmocka_unit_test(jackknife_refuses_what_it_cannot_tell),
+      cmocka_unit_test(crossed_by_hand),
+      cmocka_unit_test(crossed_keeps_its_level),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
