@@ -61,6 +61,7 @@ struct quantity {
   struct ask_group_pooled pooled;  /* what the means that are drawn average over */
   char untold[400];                /* why some exponents are not told: their values are NaN */
   char changing[ASK_GROUP_POOLED]; /* varied inputs that are not drawn and change from point to point; "": none */
+  char apart[256];                 /* the first input in which points of one place differ; "": none */
   struct row *row;                 /* owned */
   size_t count, room;
   struct ask_column written[LIMITS_AXES_OF_TABLE]; /* the varied inputs, in the units that the campaign gives */
@@ -275,6 +276,7 @@ static status read_quantity(struct store *store, const char *const inputs[AXES],
   TRY(ask_group_changing(store, by, quantity->changing, error));
   if (!quantity->exponent)
     return read_groups(quantity, &groups, error);
+  (void)text_next_item(quantity->pooled.inputs, quantity->apart, sizeof quantity->apart);
   quantity->pooled.inputs[0] = '\0'; /* exponents belong to single points */
   return read_exponents(store, quantity, method, window, newest, error);
 }
@@ -472,6 +474,27 @@ static status check_told(const struct quantity *quantity, struct error *error) {
   return status_fail(error, STATUS_USAGE, "no point has an exponent to draw: %s", quantity->untold);
 }
 
+/* Exponents of several points at one place of a chart are not averaged: names the place and the input that tells the
+ * points apart, by the words to type. most: inputs that the chart can have. */
+static status several_points(const struct quantity *quantity, const struct row *row, size_t most, struct error *error) {
+  char place[600] = "", apart[sizeof quantity->apart];
+  const char *word = quantity->apart;
+  for (size_t i = 0; i < quantity->axes; i++) {
+    const struct ask_column *unit = quantity->unit[i];
+    text_append(place, sizeof place, "%s%s = %s", i ? ", " : "", unit ? unit->word : quantity->column[i],
+                *row->text[i] ? row->text[i] : "none");
+    if (unit && *unit->unit && strcmp(unit->unit, "1") != 0)
+      text_append(place, sizeof place, " %s", unit->unit);
+  }
+  field_column_name(word, apart, sizeof apart);
+  for (size_t i = 0; i < quantity->written_count; i++)
+    if (strcmp(quantity->written[i].name, apart) == 0)
+      word = quantity->written[i].word;
+  return status_fail(error, STATUS_USAGE, "several points have %s, and their exponents are not averaged: %s%s", place,
+                     quantity->axes < most && *word ? "separate them by --by " : "choose one of them by --where",
+                     quantity->axes < most ? word : "");
+}
+
 /* ---- lines ---- */
 
 struct line {
@@ -533,10 +556,7 @@ static status add_mean(struct plot *plot, const struct row *row, struct error *e
                        MOST_MEANS);
   for (size_t i = 0; plot->quantity.exponent && i < line->count; i++)
     if (line->means[i].x == x)
-      return status_fail(
-          error, STATUS_USAGE,
-          "several points share %s = %g and one line, and their exponents cannot be averaged: separate them by --by",
-          column, x);
+      return several_points(&plot->quantity, row, 2, error);
   line->means[line->count++] = (struct picture_mean){x,          row->value,      row->lower,
                                                      row->upper, row->resolution, row->doubtful};
   return STATUS_OK;
@@ -733,9 +753,7 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
     TRY(find_panel(store, quantity, row, &panels, &panel, error));
     for (size_t i = 0; quantity->exponent && i < count; i++)
       if (tile[i].x == row->input[0] && tile[i].y == row->input[1] && tile[i].panel == panel)
-        return status_fail(error, STATUS_USAGE,
-                           "several points share %s = %g and %s = %g: their exponents are not averaged",
-                           quantity->column[0], row->input[0], quantity->column[1], row->input[1]);
+        return several_points(quantity, row, AXES, error);
     tile[count++] = (struct picture_tile){.x = row->input[0],
                                           .y = row->input[1],
                                           .value = row->value,

@@ -219,7 +219,7 @@ assert widest * (1 - 1e-9) <= told < 1.1 * widest, (widest, told)
 PY
 done
 expect 64 "$clast" plot small.db m.png -x strain -Q beta
-says "--by"
+says "several points have strain = 2 %, and their exponents are not averaged: separate them by --by angle"
 expect 64 "$clast" plot small.db m.png -x strain --by angle -Q beta_ks_from_2
 says "beta_METHOD_WINDOW"
 # Without axes: the first varied inputs, and the quantity of the campaign.
