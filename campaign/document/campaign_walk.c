@@ -43,6 +43,14 @@ struct kept {
   char number[64], others[LINE]; /* "granite 1.31 MPa, ..." */
 };
 
+/* Points with the inputs of an earlier one, which are one point with it. */
+struct twins {
+  uint8_t (*identity)[16];   /* of each new point; owned */
+  struct field_value *value; /* its values of the axes; owned */
+  size_t seen, count;
+  char pairs[LINE]; /* "target.material.name ./b.yaml as ./a.yaml, ..." */
+};
+
 struct doubts {
   size_t points, count[CONDITION_MOST];
   double number[CONDITION_MOST];    /* of the worst point with this warning */
@@ -155,16 +163,62 @@ void campaign_warn_scene(const struct scene *scene, const char *before, FILE *ou
   print_kept(&doubts, before, out);
 }
 
+/* Adds what tells two equal points apart in the document, such as the names of two files with the same values. */
+static void add_pair(struct twins *twins, const struct campaign *campaign, const struct field_value *value,
+                     const struct field_value *earlier) {
+  for (size_t a = 0; a < campaign->axis_count; a++) {
+    const struct field *row = campaign->axes[a].row;
+    char own[FIELD_TEXT_SIZE], other[FIELD_TEXT_SIZE], pair[3 * FIELD_TEXT_SIZE];
+    if (field_same_value(row, &value[a], &earlier[a]))
+      continue;
+    field_show(row, &value[a], own, sizeof own);
+    field_show(row, &earlier[a], other, sizeof other);
+    snprintf(pair, sizeof pair, "%s %s as %s", row->path, own, other);
+    if (!has_other(twins->pairs, pair) && strlen(twins->pairs) + strlen(pair) < LINE - 8)
+      text_append(twins->pairs, LINE, "%s%s", *twins->pairs ? ", " : "", pair);
+  }
+}
+
+/* Has no earlier point the inputs of this one? */
+static bool is_new(struct twins *twins, const struct campaign_walk *walk, const struct scene *scene) {
+  const size_t axes = walk->campaign->axis_count;
+  uint8_t *own = twins->identity[twins->seen];
+  scene_identity(scene, 0, own);
+  for (size_t i = 0; i < twins->seen; i++)
+    if (memcmp(twins->identity[i], own, sizeof twins->identity[i]) == 0) {
+      twins->count++;
+      add_pair(twins, walk->campaign, walk->values, twins->value + i * axes);
+      return false;
+    }
+  memcpy(twins->value + twins->seen++ * axes, walk->values, axes * sizeof *twins->value);
+  return true;
+}
+
+static void print_twins(const struct twins *twins, const char *before, FILE *out) {
+  char text[LINE + 200];
+  if (twins->count == 0)
+    return;
+  snprintf(text, sizeof text, "%zu of %zu points have the values of an earlier one, and are one point with it%s%s",
+           twins->count, twins->seen + twins->count, *twins->pairs ? ": " : "", twins->pairs);
+  print_line(text, before, out);
+}
+
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out) {
   struct doubts doubts = {0};
+  struct twins twins = {0};
   CAMPAIGN_WALK walk = {0};
   struct error error;
-  if (campaign_walk_begin(&walk, campaign, &error) == STATUS_OK)
+  if (campaign_walk_begin(&walk, campaign, &error) == STATUS_OK &&
+      memory_array(&twins.identity, LOOKED_AT, sizeof *twins.identity, "points", &error) == STATUS_OK &&
+      memory_array(&twins.value, LOOKED_AT * campaign->axis_count, sizeof *twins.value, "points", &error) == STATUS_OK)
     for (size_t i = 0; i < LOOKED_AT && campaign_walk_next(&walk); i++) {
       SCENE scene = campaign_walk_scene(&walk, &error);
-      if (scene)
+      if (scene && is_new(&twins, &walk, scene))
         add(&doubts, scene);
     }
+  print_twins(&twins, before, out);
+  free(twins.identity);
+  free(twins.value);
   print(&doubts, before, doubts.points > 1, out);
   print_kept(&doubts, before, out);
 }

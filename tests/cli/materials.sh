@@ -115,6 +115,13 @@ prints "weak sandstone - own.yaml,"; prints "own.yaml,"
 expect 0 "$clast" replay rocks.db 2
 expect 0 "$clast" run rocks.yaml --quiet
 same "$(sqlite3 rocks.db "select count(*) from run")" 2 "runs of two rocks"
+sed 's/^material: .*/material: twin/' other/own.yaml >other/twin.yaml # a copy whose values are those of the other file
+sed 's/, other.own.yaml/&, other\/twin.yaml/' rocks.yaml >twins.yaml
+expect 0 "$clast" plan twins.yaml --no-trial
+tr -s '\n ' ' ' <out | grep -q "1 of 3 points have the values of an earlier one, and are one point with it: target.material.name other/twin.yaml as other/own.yaml" || fail "two rocks are one, without a word"
+grep -E '^warning +[0-9]+ of' out | tail -n +2 | grep -v ' of 2 points' && fail "a warning counts a point twice"
+expect 0 "$clast" run twins.yaml --quiet
+says "target.material.name other/twin.yaml as other/own.yaml"
 sed -i 's/^material: .*/material: granite/' other/own.yaml
 expect 65 "$clast" plan rocks.yaml
 says "would have one name in all tables, 'own.yaml'"
@@ -189,4 +196,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 65
+done_after 67
