@@ -518,6 +518,15 @@ expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 -
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,4mm --seeds 2 --within off
 says "has 3 seeds, this one 2, but another level: it takes its place. --seeds 3"
 same "$(number coarse.db "select max(n) from convergence where knob = 'grains' and base")" 2 "seeds of the study that took its place"
+# The pages have the columns by the names of the table, and results where they speak of results.
+tr -d '\n' <out >heads; cat err >>heads
+for column in bias error best correlation "pays from correlation" "share of upper mode"; do
+  tr -s ' \n' ' ' <heads | grep -qF "$column" || fail "no column $column"
+  grep -qF "**$column**" "$source/campaign/README.md" || fail "the page does not name the column $column"
+done
+"$clast" explain "$(grep -o 'the result itself (`[^`]*' "$source/campaign/accuracy.md" | cut -d'`' -f2)" >out
+grep -q "^outcome:" out || fail "an input is told as a result"
+ok "columns and results of the pages"
 # A study of several points names each of them, for people and for programs.
 printf 'name: each\nscene: disc-explosion\nset: {body.diameter: 6 cm, stop.end_time: 0.2 ms}\nvary: {threshold.strain: [1 %%, 3 %%]}\nstore: each.db\n' >each.yaml
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
@@ -637,4 +646,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 165
+done_after 166
