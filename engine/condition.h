@@ -35,6 +35,7 @@ struct condition {
   bool lasting;      /* `after` tells at any time of a run: what it finds does not go away later */
   bool absent;       /* and nothing is wrong: the scene does not ask for them. The run does not count as one in doubt */
   const char *if_so; /* what the end may find: "the body breaks"; told before the run. NULL: the end finds the same */
+  bool (*unsure)(const void *inputs); /* of .if_so: bodies that break may escape it, too. NULL: they do not */
   const char *inputs; /* of the word "effect": the inputs that then have none; paths, separated by spaces */
   /* The number; NaN where the condition does not apply. At least one of the two. A condition with both is judged at the
    * end by `after` alone. */

@@ -272,7 +272,8 @@ static status end_round(void *context, const struct scheduler *scheduler, struct
 
 /* ---- what the inputs tell before any run ---- */
 
-/* The condition on the inputs that withholds the datum, if one does at each member; else NULL. */
+/* The condition on the inputs that withholds the datum, if one does at each member, whatever the end finds; else NULL.
+ */
 static const struct condition *find_withheld(struct fit *fit, const struct observed_datum *datum) {
   const struct condition *found = NULL;
   fit->shot = datum->shot;
@@ -286,7 +287,9 @@ static const struct condition *find_withheld(struct fit *fit, const struct obser
     found = NULL;
     for (size_t k = 0; k < CONDITION_MOST && broken >> k; k++) {
       const struct condition one[2] = {list[k], {.word = NULL}};
-      if (broken >> k & 1 && condition_mark(one, one[0].word, ask_specimens_result(&datum->ask)) == CONDITION_WITHHELD)
+      const bool unsure = list[k].unsure && list[k].unsure(scene->inputs);
+      if (broken >> k & 1 && !unsure &&
+          condition_mark(one, one[0].word, ask_specimens_result(&datum->ask)) == CONDITION_WITHHELD)
         found = &list[k];
     }
     if (!found)

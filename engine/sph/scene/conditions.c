@@ -108,6 +108,10 @@ static double dust(const void *inputs) {
   return in->fragments.dust_mass / (sph_derived_density(&in->target) * spacing * spacing * spacing);
 }
 
+static bool graded(const void *inputs) {
+  return sph_derived_is_graded(inputs);
+}
+
 /* Of a whole body 0 is right. In a graded body the coarse particles may all have stayed in the largest fragment. */
 static double dust_of_pieces(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
@@ -838,7 +842,8 @@ const struct condition sph_conditions[] = {
               .doubt = "dust is then no fragment at all, or single particles",
               .reason = "a fragment of one particle has no strength of its own",
               .remedy = "take more particles, or give a larger fragments.dust_mass", .results = "dust_fraction",
-              .withheld = true, .if_so = "such particles come off", .before = dust, .after = dust_of_pieces),
+              .withheld = true, .if_so = "such particles come off", .unsure = graded, .before = dust,
+              .after = dust_of_pieces),
     CONDITION("uncracked", .number = "the number of pieces of a body without flaws", .bound = 1,
               .doubt = "it cannot crack: its particles have lost their neighbours", .reason = "no flaws, no fragments",
               .remedy = "give the material weibull.m and weibull.k",
