@@ -342,7 +342,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   projectile_mass REAL, -- [kg] Mass of the projectile; off without one.
   specific_energy REAL, -- [J/kg] Q: kinetic energy of the projectile over the mass of the target; off without a projectile.
   fracture_ceased INTEGER, -- Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.
-  first_damage REAL, -- [s] Time when damage of a body with flaws began; off without damage.
+  first_damage REAL, -- [s] Time when damage of a body with flaws began; off without damage. It is looked for at every eighth step, so it may be eight steps late.
   cease_time REAL, -- [s] Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.
   mean_damage REAL, -- [1] Mean damage D of the target at the end, weighted by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.
@@ -1328,7 +1328,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'energy_kinetic', 'J', 'Kinetic ene
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_work_of_held', 'J', 'Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; 0 in all other scenes.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage. It is looked for at every eighth step, so it may be eight steps late.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Number of explicit flaws in all bodies.', 1);
 
@@ -1598,7 +1598,7 @@ INSERT INTO column_doc VALUES ('runs', 'finished_at', 's', 'when it was stored, 
 
 INSERT INTO column_doc VALUES ('runs', 'first_break', 's', 'Time of the first break; off when none broke.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage.', 0);
+INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage. It is looked for at every eighth step, so it may be eight steps late.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'flaws', '1', 'Number of explicit flaws in all bodies.', 0);
 

@@ -29,7 +29,8 @@ static void row(const struct printing *printing, const char *name, double value,
 }
 
 /* Runs that the mean needs for the wanted interval, in a table and by the rule of a campaign, from the standard
- * deviation. */
+ * deviation. Runs without a value tell nothing: as many are needed beside the others. The rule counts withheld values,
+ * too. */
 static void print_runs_needed(const struct printing *printing, const struct sample_summary *mean) {
   const struct scatter_choice *choice = printing->choice;
   const double wanted = choice->half_width * (choice->relative ? fabs(mean->mean) : 1);
@@ -37,8 +38,10 @@ static void print_runs_needed(const struct printing *printing, const struct samp
   const size_t runs = share ? scatter_runs_of_share(mean->mean, mean->standard_deviation, wanted)
                             : scatter_runs_needed(mean->standard_deviation, wanted);
   const size_t by_rule = scatter_runs_of_rule(mean->mean, mean->standard_deviation, wanted, share);
-  row(printing, "runs needed", runs ? (double)runs : (double)NAN, NAN, NAN);
-  row(printing, "runs needed, seeds.until", by_rule ? (double)by_rule : (double)NAN, NAN, NAN);
+  const double all = (double)printing->pool->data.runs.count, values = (double)mean->n;
+  const double raw = values + (double)printing->pool->doubts.withheld;
+  row(printing, "runs needed", runs ? ceil((double)runs * all / values) : (double)NAN, NAN, NAN);
+  row(printing, "runs needed, seeds.until", by_rule ? ceil((double)by_rule * all / raw) : (double)NAN, NAN, NAN);
 }
 
 static void print_scatter(const struct printing *printing, struct scatter *s) {

@@ -203,13 +203,18 @@ void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double hal
 void uncertainty_mark(const struct ask_doubts *doubts, char text[UNCERTAINTY_TEXT]) {
   const int64_t values = (int64_t)((uint64_t)doubts->runs - (uint64_t)doubts->withheld); /* of any store */
   text[0] = 0;
-  if (doubts->doubtful > 0 && doubts->withheld > 0)
-    snprintf(text, UNCERTAINTY_TEXT, " (%" PRId64 ")" UNCERTAINTY_MARK, values);
-  else if (doubts->doubtful > 0)
-    snprintf(text, UNCERTAINTY_TEXT, UNCERTAINTY_MARK);
+  if (doubts->withheld > 0)
+    snprintf(text, UNCERTAINTY_TEXT, " (%" PRId64 ")", values);
+  if (doubts->doubtful > 0)
+    text_append(text, UNCERTAINTY_TEXT, UNCERTAINTY_MARK);
 }
 
 void uncertainty_doubts(const struct ask_doubts *doubts, FILE *out) {
+  for (size_t k = 0; k < sizeof doubts->absent / sizeof *doubts->absent && *doubts->absent[k].name; k++)
+    fprintf(out,
+            "clast: %s: %" PRId64 " of %" PRId64
+            " runs have no value and are not in its numbers (`clast explain %s`)\n",
+            doubts->absent[k].name, doubts->absent[k].runs, doubts->runs, doubts->absent[k].name);
   for (size_t k = 0; k < doubts->count; k++) {
     const struct ask_doubt *doubt = &doubts->word[k];
     fprintf(out, "clast: %s, %" PRId64 " of %" PRId64 " runs: %s: ",

@@ -106,6 +106,11 @@ struct ask_doubts {
   int64_t runs, doubtful, withheld; /* that count; whose words mark a result; of these, whose result is withheld */
   int64_t excluded;                 /* beside these; by a person */
   const char *chosen;               /* ask_choose() of the store, borrowed from it; NULL, "": all */
+  struct ask_absent { /* runs that lack a result though nothing withholds it, such as the time of the first
+                         break of a body that did not break; "": no more */
+    char name[64];
+    int64_t runs;
+  } absent[4];
   size_t count;
   struct ask_doubt {
     char word[CONDITION_WORD];

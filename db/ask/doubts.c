@@ -19,6 +19,18 @@ static void add_word(struct ask_doubts *doubts, const char *word, const struct c
   doubts->word[k].runs += runs;
 }
 
+enum { ABSENT = sizeof((struct ask_doubts *)0)->absent / sizeof(struct ask_absent) };
+
+static void add_absent(struct ask_doubts *doubts, const char *name, int64_t runs) {
+  size_t k = 0;
+  while (k < ABSENT && *doubts->absent[k].name && strcmp(doubts->absent[k].name, name) != 0)
+    k++;
+  if (k == ABSENT || runs <= 0)
+    return;
+  snprintf(doubts->absent[k].name, sizeof doubts->absent[k].name, "%.63s", name);
+  doubts->absent[k].runs += runs;
+}
+
 status ask_doubts_count(struct store *store, double *doubtful, double *of_studies, struct error *error) {
   TRY(answer_number(store, of_studies, error, "SELECT count(*) FROM runs WHERE study"));
   return answer_number(store, doubtful, error, "SELECT count(*) FROM runs WHERE counts AND doubtful");
@@ -45,13 +57,32 @@ void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others) 
   doubts->withheld += others->withheld;
   doubts->excluded += others->excluded;
   doubts->chosen = others->chosen;
+  for (size_t k = 0; k < ABSENT; k++)
+    add_absent(doubts, others->absent[k].name, others->absent[k].runs);
   for (size_t k = 0; k < others->count; k++)
     add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs);
 }
 
+enum { RESULTS = 32 };
+
+/* The columns of `results`, but that of exponents, which tell themselves when there are too few fragments. */
+static size_t columns_of(const char *results, char (*name)[ASK_GROUP_NAME]) {
+  size_t count = 0;
+  for (size_t length; results += strspn(results, " "), *results && count < RESULTS; results += length) {
+    length = strcspn(results, " ");
+    snprintf(name[count], ASK_GROUP_NAME, "%.*s", (int)length, results);
+    count += strcmp(name[count], OUTCOME_NAME(mean_fragment_mass)) != 0;
+  }
+  return count;
+}
+
 status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *results,
                   struct ask_doubts *doubts, struct error *error) {
-  sqlite3_str *where = sqlite3_str_new(NULL);
+  sqlite3_str *where = sqlite3_str_new(NULL), *columns = sqlite3_str_new(NULL);
+  char column[RESULTS][ASK_GROUP_NAME];
+  const size_t count = columns_of(results, column);
+  for (size_t i = 0; i < count; i++)
+    sqlite3_str_appendf(columns, ", sum(counts AND \"%w\" IS NULL)", column[i]);
   if (choice->point)
     sqlite3_str_appendf(where, " AND point_id = %lld", (long long)choice->point);
   if (choice->run)
@@ -66,16 +97,23 @@ status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, c
   ANSWER
   answer =
       answer_to(store, error,
-                "SELECT engine, warnings, sum(counts), sum(surplus > 1) FROM runs WHERE (counts = 1 OR surplus > 1) "
+                "SELECT engine, warnings, sum(counts), sum(surplus > 1)%z FROM runs WHERE (counts = 1 OR surplus > 1) "
                 "AND results_version = ifnull((SELECT max(results_version) FROM point_total t WHERE t.point_id = "
                 "runs.point_id AND t.runs > 0), results_version)%z GROUP BY engine, warnings ORDER BY engine, "
                 "warnings",
-                sqlite3_str_finish(where));
+                sqlite3_str_finish(columns), sqlite3_str_finish(where));
   while (answer_next(&answer)) {
+    const int64_t runs = answer_integer(&answer, 2);
     doubts->excluded += answer_integer(&answer, 3);
-    if (answer_integer(&answer, 2) > 0)
-      (void)ask_doubts_run(doubts, answer_text(&answer, 0), answer_text(&answer, 1), results,
-                           answer_integer(&answer, 2));
+    if (runs <= 0)
+      continue;
+    const char *words = answer_text(&answer, 1);
+    const struct engine_kind *kind = engine_find(answer_text(&answer, 0), NULL);
+    (void)ask_doubts_run(doubts, answer_text(&answer, 0), words, results, runs);
+    for (size_t i = 0; i < count; i++)
+      if (views_has_result(kind, column[i]) &&
+          condition_mark(kind ? kind->conditions : NULL, words, column[i]) != CONDITION_WITHHELD)
+        add_absent(doubts, column[i], answer_integer(&answer, 4 + i));
   }
   doubts->chosen = store->chosen;
   return answer_end(&answer);

@@ -27,6 +27,11 @@ static const struct field *row_of(const struct field_table *table, const char *e
   return field_of_column(table, strncmp(column, prefix, length) == 0 ? column + length : column);
 }
 
+bool views_has_result(const struct engine_kind *kind, const char *column) {
+  return !kind || kind->results->count == 0 || row_of(&outcome_table, "", column) ||
+         row_of(kind->results, kind->name, column);
+}
+
 struct sample_range views_range(const char *column) {
   const struct field *row = row_of(&outcome_table, "", column);
   struct sample_range all = sample_range(row);

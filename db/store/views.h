@@ -69,6 +69,11 @@ void views_statistics_half_width(size_t i, const char *n, const char *t, const s
 void views_statistics_columns(size_t i, const char *name, const char *sd, const char *n,
                               const struct sample_range *range, FILE *out);
 
+struct engine_kind;
+/* Has an engine a value for a column of the view runs? An engine that this program lacks (NULL), or whose
+ * scenes declare their results: true. */
+bool views_has_result(const struct engine_kind *kind, const char *column);
+
 /* The values that a column of the view runs can have; of a name that results of several engines have, those of all. */
 struct sample_range views_range(const char *column);
 

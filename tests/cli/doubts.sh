@@ -293,4 +293,42 @@ for function in $named; do
   expect 64 "$clast" query marked.db "select $function)"
   says "wrong number of arguments to function $function)"
 done
-done_after 132
+
+# Results that runs lack by their nature, such as the first break of a body that did not break: their number is told, beside
+# the mean and in a sentence, and more runs are needed for a width.
+cat >lacks.yaml <<'YAML'
+engine: command
+name: lacks
+command:
+  program: awk
+  version: "1"
+  arguments: ["-f", "lacks.awk", "{{x}}", "{{small_seed}}"]
+  files:
+    lacks.awk: |
+      function r() { s = (s * 16807) % 2147483647; return s / 2147483647 }
+      BEGIN { s = ARGV[2] % 2147483647; r(); r(); a = r(); if (ARGV[1] > 0.5 || r() > 0.5) print "{\"a\": null}"; else printf "{\"a\": %.17g}\n", a }
+  inputs:
+    x: {default: 0, least: 0, most: 1, doc: x}
+  results:
+    a: {doc: a}
+YAML
+printf '%s\n' 'name: lack' 'scene: lacks.yaml' 'vary: {x: [0, 0.4, 1]}' 'seeds: 40' 'quantity: a' >lack.yaml
+expect 0 "$clast" run lack.yaml --allow-commands --in-process -j 2 --quiet
+values=$(number lack.db "select count(a) from runs where x = 0")
+expect 0 "$clast" stats lack.db -Q a --by x
+prints " ($values)"
+says "a: $((120 - 2 * values)) of 120 runs have no value and are not in its numbers"
+expect 0 "$clast" stats lack.db -Q mean_fragment_mass
+! grep -q "have no value" err || fail "exponents tell themselves"
+expect 0 "$clast" scatter lack.db -Q a --half-width 0.03 --point 1 --csv
+python - "$values" <<'PY' || fail "runs needed"
+import csv, math, sys
+rows = {row[1]: row[2] for row in csv.reader(open("out"))}
+value = lambda name: float(rows[name])
+n = int(sys.argv[1])
+assert value("runs") == n
+sd = value("standard deviation")
+assert value("runs needed") / (40 / n) > (1.9 * sd / 0.03) ** 2, (rows, sd)
+PY
+ok "values that runs lack"
+done_after 137

@@ -28,7 +28,9 @@ static const struct field rows[] = {
          .doc = "Q: kinetic energy of the projectile over the mass of the target; off without a projectile."),
     ROW_OF(sph_results, fracture_ceased, fracture_ceased, FIELD_BOOLEAN, NULL, .maximum = 1,
            .doc = "Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time."),
-    REAL(first_damage, "s", 0, .doc = "Time when damage of a body with flaws began; off without damage."),
+    REAL(first_damage, "s", 0,
+         .doc = "Time when damage of a body with flaws began; off without damage. It is looked for at every eighth "
+                "step, so it may be eight steps late."),
     REAL(cease_time, "s", 0,
          .doc = "Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture "
                 "has not ceased."),
