@@ -19,6 +19,7 @@
 extern char **environ;
 
 enum { LETTER = 8, LINE = 19, LINES = 7 }; /* pixels: width of a letter, height of a line; maximum lines of a text */
+enum { TURNED = 50 };                      /* letters in a line of a name of a bar that is written upwards */
 enum { STEM = 256 };
 
 struct chart {
@@ -144,22 +145,61 @@ struct chart *chart_new(const char *template, const struct picture_page *page, c
   return chart;
 }
 
-double chart_legend(struct chart *chart, size_t count, const char *const *labels) {
-  size_t longest = 0, shown = 0;
-  OWNED char(*raised)[400] = memory_small(count, sizeof *raised); /* at most a few for each series */
-  OWNED const char **label = memory_small(count, sizeof *label);
-  for (size_t i = 0; i < count; i++) {
-    text_raise(labels[i] ? labels[i] : "", raised[i], sizeof raised[i]);
-    label[i] = raised[i];
-    const size_t wide = chart_letters(label[i]);
+static size_t longest_line(const char *text) {
+  size_t longest = 0;
+  for (; *text; text += strcspn(text, "\n") + (text[strcspn(text, "\n")] != '\0')) {
+    const size_t wide = text_characters(text, strcspn(text, "\n"));
     longest = wide > longest ? wide : longest;
-    shown += wide > 0;
   }
-  size_t columns = (size_t)((chart->page->width - 125) / (LETTER * ((double)longest + 7)));
+  return longest;
+}
+
+/* Sets an array of texts cut into lines of at most `most` letters. Returns the largest number of lines of one text. */
+static size_t folded_texts(struct chart *chart, const char *name, size_t count, const char *const *texts, double most,
+                           size_t *longest, size_t *shown) {
+  size_t tall = 1;
+  OWNED char(*folded)[500] = memory_small(count, sizeof *folded); /* at most PICTURE_SERIES labels or places */
+  OWNED const char **label = memory_small(count, sizeof *label);
+  *longest = *shown = 0;
+  for (size_t i = 0; i < count; i++) {
+    char raised[400];
+    text_raise(texts[i] ? texts[i] : "", raised, sizeof raised);
+    const size_t lines = fold(raised, (size_t)fmax(most, 1), folded[i], sizeof folded[i]);
+    const size_t wide = longest_line(folded[i]);
+    label[i] = folded[i];
+    tall = lines > tall ? lines : tall;
+    *longest = wide > *longest ? wide : *longest;
+    *shown += wide > 0;
+  }
+  chart_texts(chart, name, count, label);
+  return tall;
+}
+
+double chart_legend(struct chart *chart, size_t count, const char *const *labels) {
+  size_t longest, shown;
+  const double room = (chart->page->width - 125) / LETTER;
+  const size_t tall = folded_texts(chart, "label", count, labels, room, &longest, &shown);
+  size_t columns = (size_t)(room / ((double)longest + 7));
   columns = columns < 1 ? 1 : columns > 4 ? 4 : columns;
-  chart_texts(chart, "label", count, label);
   chart_number(chart, "legend_columns", (double)columns);
-  return (double)(LINE * ((shown + columns - 1) / columns));
+  chart_number(chart, "legend_lines", (double)tall);
+  return (double)(LINE * tall * ((shown + columns - 1) / columns));
+}
+
+double chart_places(struct chart *chart, size_t count, const char *const *places) {
+  size_t longest, shown;
+  const double room = (chart->page->width - 110) / LETTER / (double)(count ? count : 1) - 1;
+  size_t widest = 0; /* word */
+  for (size_t i = 0; i < count; i++)
+    for (const char *word = places[i]; *word; word += strcspn(word, " ") + strspn(word + strcspn(word, " "), " ")) {
+      const size_t wide = text_characters(word, strcspn(word, " "));
+      widest = wide > widest ? wide : widest;
+    }
+  const bool turned = (double)widest > room;
+  const size_t tall = folded_texts(chart, "place", count, places, turned ? TURNED : room, &longest, &shown);
+  chart_number(chart, "place_turned", turned);
+  chart_number(chart, "place_lines", turned ? 1 : (double)tall);
+  return turned ? LETTER * (double)longest : (double)(LINE * (tall - 1));
 }
 
 void chart_columns(struct chart *chart, const char *names) {

@@ -37,9 +37,12 @@ void chart_number(struct chart *chart, const char *name, double value);
 void chart_texts(struct chart *chart, const char *name, size_t count, const char *const *texts);
 /* Sets an array of `count` numbers. */
 void chart_numbers(struct chart *chart, const char *name, size_t count, const double *values);
-/* Sets the legend of `count` labels below the frame (array `label`), with its number of columns. Returns its height in
- * pixels. */
+/* Sets the legend of `count` labels below the frame (array `label`), with its number of columns and the lines of its
+ * longest label. Returns its height in pixels. */
 double chart_legend(struct chart *chart, size_t count, const char *const *labels);
+/* Sets the names of `count` bars (array `place`): in lines that fit, or turned where a word does not. Returns the
+ * height in pixels that they take beyond one line. */
+double chart_places(struct chart *chart, size_t count, const char *const *places);
 
 /* The number of characters of a UTF-8 text, not of bytes. */
 size_t chart_letters(const char *text);

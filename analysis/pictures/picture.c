@@ -87,7 +87,7 @@ status picture_curves(const struct picture_page *page, const struct picture_word
   const size_t places = curve[0].places;
   write_range(chart, 'x', places > 0 ? (double[2]){0.5, (double)places + 0.5} : range, NAN);
   chart_number(chart, "places", (double)places);
-  chart_texts(chart, "place", places, curve[0].place);
+  const double names = chart_places(chart, places, curve[0].place);
   for (size_t c = 0; c < count; c++) {
     labels[c] = curve[c].label;
     band[c] = curve[c].band;
@@ -95,7 +95,7 @@ status picture_curves(const struct picture_page *page, const struct picture_word
   }
   chart_numbers(chart, "band", count, band);
   const double legend = chart_legend(chart, count, labels);
-  return chart_draw(chart, 0.62 * page->width + legend, error);
+  return chart_draw(chart, 0.62 * page->width + names + legend, error);
 }
 
 /* ---- scatter of runs: histograms and distribution functions, one above the other ---- */

@@ -239,7 +239,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   struct picture_series series[PICTURE_SERIES];
   OWNED struct pooled_bin *bins = NULL;
   size_t count = 0;
-  char caption[CAPTION], label[300], title[300], scenes[200];
+  char caption[CAPTION], label[400], title[300], scenes[200];
   struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, 3}};
   if (curves->count)
     form = curves->curve[0].form;

@@ -389,6 +389,20 @@ static void curves_are_drawn(void **state) {
   assert_int_equal(curves("one.svg", 1, &(struct picture_curve){.label = "lonely", .count = 1, .mean = high}),
                    STATUS_OK);
   assert_non_null(strstr(text_of(at("one.svg")), "lonely"));
+  const char *cited = "measured: Nakamura and Fujiwara 1991, Icarus 92, pages 132 to 146, shot 10 of their table 2 "
+                      "(sieves: number of a class from its mass)"; /* lines of 96 letters at most */
+  assert_int_equal(curves("cited.svg", 1, &(struct picture_curve){.label = cited, .count = 1, .mean = high}),
+                   STATUS_OK);
+  assert_non_null(strstr(text_of(at("cited.gp")), "table 2'.\"\\n\".'(sieves"));
+  assert_non_null(strstr(text_of(at("cited.gp")), "\nlegend_lines = 2\n"));
+  const char *rocks[] = {"A limestone of Solnhofen", "Carrara marble",
+                         "Ruhrsandstein with a very_long_name_of_its_own"};
+  struct picture_curve bars = {.count = 3, .mean = high, .places = 2, .place = rocks};
+  assert_int_equal(curves("bars.png", 1, &bars), STATUS_OK);
+  assert_non_null(strstr(text_of(at("bars.gp")), "\nplace_turned = 0\n"));
+  bars.places = 3;
+  assert_int_equal(curves("bars.png", 1, &bars), STATUS_OK);
+  assert_non_null(strstr(text_of(at("bars.gp")), "\nplace_turned = 1\n"));
   assert_int_equal(curves("none.png", 0, NULL), STATUS_USAGE);
   assert_int_equal(curves("none.png", 1, &(struct picture_curve){.label = NULL, .count = 1, .mean = &low[1]}),
                    STATUS_USAGE);
@@ -693,6 +707,12 @@ int main(int count, char **arguments) {
                            "curves.png",
                            "curves.gp",
                            "curves.dat",
+                           "bars.png",
+                           "bars.gp",
+                           "bars.dat",
+                           "cited.svg",
+                           "cited.gp",
+                           "cited.dat",
                            "narrow.pdf",
                            "thin.svg",
                            "thin.gp",

@@ -30,3 +30,4 @@ set rmargin 3
 power(x) = floor(log10(abs(x)) + 1e-9)
 rest(x) = sprintf('%.4g', x / 10.**power(x))
 people(x) = x == 0 || (abs(x) >= 1e-3 && abs(x) < 1e5) ? sprintf('%.4g', x) : (rest(x) eq '1' ? '' : rest(x) . '×') . sprintf('10^{%d}', power(x))
+if (exists('legend_lines')) { set key spacing legend_lines }

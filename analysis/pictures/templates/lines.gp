@@ -1,7 +1,7 @@
 # Means over an input with their 95 % intervals, a line for each value of a second input. Thin bars add the error of
 # the resolution; NaN: no bar. A mean in doubt has a "!". Block i - 1 of the data is line i: x, mean, low, high,
 # thin_low, thin_high, doubtful. band[i] > 0: a line without marks in a band from low to high. places > 0: bars, at the
-# words place[1], place[2], ... of the axis.
+# words place[1], place[2], ... of the axis, of place_lines lines or turned.
 if (log_x) { set logscale x }
 if (log_x) { set format x (1.0 * x_high / x_low > 1e4 ? '10^{%T}' : '') }
 if (log_x && 1.0 * x_high / x_low <= 1e4) {
@@ -21,6 +21,7 @@ if (places > 0) {
   unset logscale x
   set xtics format '' noenhanced
   set xtics ('' 0)
+  if (place_turned) { set xtics rotate by 90 right } else { set xlabel offset 0, 1.2 - place_lines }
   do for [i = 1:places] { set xtics add (place[i] i) }
   set boxwidth 0.8 / series
   set yrange [*<0:0<*]
