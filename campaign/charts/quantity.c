@@ -507,7 +507,8 @@ struct line {
 
 struct plot {
   struct quantity quantity;
-  const char *place[MOST_PLACES]; /* the words of an axis that has no numbers */
+  const char *place[MOST_PLACES];     /* the words of an axis that has no numbers */
+  char name[MOST_PLACES][INPUT_TEXT]; /* the same as a picture shows them */
   size_t places;
   struct line line[MOST_LINES];
   size_t count;
@@ -534,20 +535,55 @@ static status find_line(struct plot *plot, const struct row *row, struct line **
   return STATUS_OK;
 }
 
+/* Finds the place of a word on the axis, or makes it. */
+static status find_place(struct plot *plot, const char *text, double *x, struct error *error) {
+  size_t place = 0;
+  while (place < plot->places && strcmp(plot->place[place], text) != 0)
+    place++;
+  if (place == MOST_PLACES)
+    return status_fail(error, STATUS_USAGE, "%s has more than %d values: give it to --by", plot->quantity.column[0],
+                       MOST_PLACES);
+  if (place == plot->places)
+    plot->place[plot->places++] = text;
+  *x = (double)place + 1;
+  return STATUS_OK;
+}
+
+/* Words of the axis have the order of the points, which is that of the campaign. */
+static status order_places(struct store *store, struct plot *plot, struct error *error) {
+  const char *input = plot->quantity.column[0];
+  double x;
+  ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, true, 1, &input, error);
+  for (struct ask_points_row point; ask_points_next(&points, &point);)
+    for (size_t i = 0; point.inputs[0].kind == QUERY_TEXT && i < plot->quantity.count; i++) {
+      const char *text = plot->quantity.row[i].text[0];
+      if (isnan(plot->quantity.row[i].input[0]) && strncmp(text, point.inputs[0].text, INPUT_TEXT - 1) == 0)
+        TRY(find_place(plot, text, &x, error));
+    }
+  return answer_end(&points);
+}
+
+/* "weak sandstone" of "weak sandstone - rock.yaml": the file stands in a name only where two rocks have the same. */
+static void name_places(struct plot *plot) {
+  for (size_t i = 0; i < plot->places; i++) {
+    const char *text = plot->place[i], *file = NULL;
+    for (const char *at = text; (at = strstr(at, " - ")); at++)
+      file = strchr(at, '.') ? at : file;
+    const size_t length = file ? (size_t)(file - text) : strlen(text);
+    for (size_t k = 0; file && k < plot->places; k++)
+      if (k != i && strncmp(plot->place[k], text, length) == 0 &&
+          (!plot->place[k][length] || strncmp(plot->place[k] + length, " - ", 3) == 0))
+        file = NULL;
+    snprintf(plot->name[i], INPUT_TEXT, "%.*s", file ? (int)length : INPUT_TEXT, text);
+    plot->place[i] = plot->name[i];
+  }
+}
+
 static status add_mean(struct plot *plot, const struct row *row, struct error *error) {
-  const char *column = plot->quantity.column[0];
   double x = row->input[0];
   struct line *line = NULL;
-  if (isnan(x) && *row->text[0]) {
-    size_t place = 0;
-    while (place < plot->places && strcmp(plot->place[place], row->text[0]) != 0)
-      place++;
-    if (place == MOST_PLACES)
-      return status_fail(error, STATUS_USAGE, "%s has more than %d values: give it to --by", column, MOST_PLACES);
-    if (place == plot->places)
-      plot->place[plot->places++] = row->text[0];
-    x = (double)place + 1;
-  }
+  if (isnan(x) && *row->text[0])
+    TRY(find_place(plot, row->text[0], &x, error));
   if (isnan(x))
     return STATUS_OK; /* off, or does not apply: an axis of numbers cannot show it */
   TRY(find_line(plot, row, &line, error));
@@ -594,6 +630,7 @@ static void tell_changing(const struct quantity *quantity, const char *drawn, ch
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
   keep_drawn(&plot->quantity, 1);
+  TRY(order_places(store, plot, error));
   for (size_t i = 0; i < quantity->count; i++)
     TRY(add_mean(plot, &quantity->row[i], error));
   TRY(check_told(quantity, error));
@@ -605,6 +642,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     TRY(charts_axis(store, quantity->column[1], by, error));
   TRY(charts_axis(store, quantity->name, y, error));
   label_lines(plot, by);
+  name_places(plot);
   struct picture_curve curves[MOST_LINES] = {0};
   const struct sample_range range = views_range(quantity->name);
   for (size_t i = 0; i < plot->count; i++) {

@@ -115,6 +115,13 @@ prints "weak sandstone - own.yaml,"; prints "own.yaml,"
 expect 0 "$clast" replay rocks.db 2
 expect 0 "$clast" run rocks.yaml --quiet
 same "$(sqlite3 rocks.db "select count(*) from run")" 2 "runs of two rocks"
+# Bars have the order of the campaign, and a file's name only where two rocks have the same.
+sed 's/^density: .*/density: 2.3 g\/cm^3/' other/own.yaml >other/third.yaml
+sed 's/, other.own.yaml/, other\/third.yaml&/' rocks.yaml >three.yaml
+expect 0 "$clast" run three.yaml --store three.db --quiet
+for bars in rocks three; do expect 0 "$clast" plot $bars.db $bars.svg -x material --keep-script; done
+bars() { grep '^place\[' "$1.gp" | cut -d"'" -f2 | paste -sd ','; }
+same "$(bars rocks) $(bars three)" "own.yaml,weak sandstone own.yaml,weak sandstone - third.yaml,weak sandstone - own.yaml" "names of bars"
 sed 's/^material: .*/material: twin/' other/own.yaml >other/twin.yaml # a copy whose values are those of the other file
 sed 's/, other.own.yaml/&, other\/twin.yaml/' rocks.yaml >twins.yaml
 expect 0 "$clast" plan twins.yaml --no-trial
@@ -196,4 +203,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 67
+done_after 71
