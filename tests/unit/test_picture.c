@@ -395,8 +395,7 @@ static void curves_are_drawn(void **state) {
                    STATUS_OK);
   assert_non_null(strstr(text_of(at("cited.gp")), "table 2'.\"\\n\".'(sieves"));
   assert_non_null(strstr(text_of(at("cited.gp")), "\nlegend_lines = 2\n"));
-  const char *rocks[] = {"A limestone of Solnhofen", "Carrara marble",
-                         "Ruhrsandstein with a very_long_name_of_its_own"};
+  const char *rocks[] = {"A limestone of Solnhofen", "Carrara marble", "sandstone_of_a_quarry_near_the_river_Ruhr"};
   struct picture_curve bars = {.count = 3, .mean = high, .places = 2, .place = rocks};
   assert_int_equal(curves("bars.png", 1, &bars), STATUS_OK);
   assert_non_null(strstr(text_of(at("bars.gp")), "\nplace_turned = 0\n"));
