@@ -346,21 +346,36 @@ static char *trim(char *text) {
   return text;
 }
 
+/* A decimal comma of a remark: it separates no cells, so it is read as in quotes, whatever mark the cells have. */
+static status take_comma(struct reading *r, char *value, struct error *error) {
+  struct csv_cell cell = {.text = value, .quoted = true};
+  const char mark = r->csv.mark;
+  r->csv.mark = '\0';
+  const bool good = csv_number(&r->csv, &cell);
+  r->csv.mark = mark;
+  return good ? STATUS_OK
+              : status_fail(error, STATUS_CONTENT, "%s:%lld: %s", r->path, (long long)r->csv.line, r->csv.wrong);
+}
+
 /* "# density: 2.7 g/cm^3" */
 static status take_remark(struct reading *r, char *text, struct error *error) {
   char *colon = strchr(text, ':');
   if (!colon)
     return STATUS_OK;
   *colon = '\0';
-  const char *key = trim(text), *value = trim(colon + 1);
+  const char *key = trim(text);
+  char *value = trim(colon + 1);
   if (strcmp(key, "source") == 0)
     snprintf(r->out->source, sizeof r->out->source, "%s", value);
-  if (strcmp(key, "complete from") == 0) {
+  const bool complete = strcmp(key, "complete from") == 0;
+  if (!complete && strcmp(key, "density") != 0)
+    return STATUS_OK;
+  TRY(take_comma(r, value, error));
+  if (complete) {
     r->complete = value;
     r->complete_line = r->csv.line;
-  }
-  if (strcmp(key, "density") != 0)
     return STATUS_OK;
+  }
   double density;
   if (unit_is_bare(value) || unit_read(value, "kg/m^3", &density, error) || !(density > 0))
     return refuse(r, error, "the density needs a number and a unit, such as 2.7 g/cm^3, not", value);

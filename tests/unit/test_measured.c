@@ -50,8 +50,9 @@ static void the_three_kinds(void **state) {
   free(bins);
   measured_release(&m);
 
-  /* Sizes: a sphere of 1 cm and 6/pi g/cm^3 weighs 1 g. The density of the file overrides that of the caller. */
-  assert_int_equal(read_text("# density: 1.909859317102744 g/cm^3\n# complete from: 1 cm\n"
+  /* Sizes: a sphere of 1 cm and 6/pi g/cm^3 weighs 1 g. The density of the file overrides that of the caller.
+   * Its remarks have decimal commas. */
+  assert_int_equal(read_text("# density: 1,909859317102744 g/cm^3\n# complete from: 1,0 cm\n"
                              "size (mm)\tcumulative\n10\t7\n20\t2\n",
                              &(struct spectrum_size){1, 3}, &m),
                    STATUS_OK);
@@ -113,6 +114,7 @@ static void bad_files(void **state) {
       /* A file means one thing. */
       {"mass\n94\n31\n", ":2: a number without a unit"},
       {"# complete from: 1\nmass (g)\n1\n", "a number without a unit"},
+      {"# complete from: 1,500 g\nmass (g)\n1\n", ":1: '1,500 g': it may be a decimal comma"},
       {"# density: 2.7\nsize (mm)\n1\n", ":1: the density needs a number and a unit"},
       {"mass (kg)\n1,5\n2,5\n", ":2: 2 cells, but the header has 1"},
       {"mass (kg)\n\"1,500\"\n", ":2: '1,500': it may be a decimal comma"},
