@@ -104,8 +104,10 @@ static status read_store(struct serve *serve, const struct job *job, const struc
       continue;
     if (values)
       values[r] = outcome_is_usable(run.state) && !run.withheld ? run.value : (double)NAN;
-    if (doubts && outcome_is_usable(run.state))
+    if (doubts && outcome_is_usable(run.state)) {
       (void)ask_doubts_run(doubts, job->scene->kind->name, run.warnings, result->row->path, 1);
+      ask_doubts_absent(doubts, result->row->path, isnan(run.value) && !run.withheld);
+    }
     if (there)
       there[r] = true;
   }

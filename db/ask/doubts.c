@@ -21,7 +21,7 @@ static void add_word(struct ask_doubts *doubts, const char *word, const struct c
 
 enum { ABSENT = sizeof((struct ask_doubts *)0)->absent / sizeof(struct ask_absent) };
 
-static void add_absent(struct ask_doubts *doubts, const char *name, int64_t runs) {
+void ask_doubts_absent(struct ask_doubts *doubts, const char *name, int64_t runs) {
   size_t k = 0;
   while (k < ABSENT && *doubts->absent[k].name && strcmp(doubts->absent[k].name, name) != 0)
     k++;
@@ -58,7 +58,7 @@ void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others) 
   doubts->excluded += others->excluded;
   doubts->chosen = others->chosen;
   for (size_t k = 0; k < ABSENT; k++)
-    add_absent(doubts, others->absent[k].name, others->absent[k].runs);
+    ask_doubts_absent(doubts, others->absent[k].name, others->absent[k].runs);
   for (size_t k = 0; k < others->count; k++)
     add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs);
 }
@@ -113,7 +113,7 @@ status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, c
     for (size_t i = 0; i < count; i++)
       if (views_has_result(kind, column[i]) &&
           condition_mark(kind ? kind->conditions : NULL, words, column[i]) != CONDITION_WITHHELD)
-        add_absent(doubts, column[i], answer_integer(&answer, 4 + i));
+        ask_doubts_absent(doubts, column[i], answer_integer(&answer, 4 + i));
   }
   doubts->chosen = store->chosen;
   return answer_end(&answer);
