@@ -713,6 +713,8 @@ static status end_campaign(struct running *running, const char *outcome, struct 
   running->summary->runs_done += summary.runs_done;
   running->summary->runs_failed += summary.runs_failed;
   running->summary->runs_reused += summary.runs_reused;
+  if (!running->summary->session_id)
+    running->summary->session_id = summary.session_id;
   running->summary->cpu_s += summary.cpu_s;
   tick(running->driver, 0, true);
   driver_free(running->driver);

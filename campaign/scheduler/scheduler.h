@@ -191,6 +191,7 @@ struct series {
 
 struct series_summary {
   int64_t runs_done, runs_failed, runs_reused;
+  int64_t session_id; /* of its first campaign; 0: none began */
   double cpu_s;
 };
 

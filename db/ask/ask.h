@@ -9,6 +9,7 @@
 struct ask_choice {
   int64_t point;        /* 0: all */
   const char *campaign; /* number or name (several may have it); NULL: all */
+  int64_t session;      /* besides, the campaigns of this session and of later ones; 0: none of these */
   const char *where;    /* NULL: all */
   /* Without the points that only studies and searches (clast converge, find, fit) have: their points share seeds, or
    * lie where the search looked, so they are no sample. Holds without `point` and `campaign`, in a store with others.

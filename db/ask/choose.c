@@ -27,14 +27,15 @@ static status forget(sqlite3 *db, struct error *error) {
                      doing, error);
 }
 
-static status choose_campaigns(struct store *store, const char *campaign, struct error *error) {
+static status choose_campaigns(struct store *store, const char *campaign, int64_t session, struct error *error) {
   int64_t count = 0;
   TRY(sql_executef(store->db, doing, error,
                    "CREATE TEMP TABLE chosen_campaign AS SELECT campaign_id FROM main.campaign WHERE name = %Q OR "
-                   "CAST(campaign_id AS TEXT) = %Q",
-                   campaign, campaign));
+                   "CAST(campaign_id AS TEXT) = %Q OR (%d AND campaign_id IN (SELECT campaign_id FROM main.session "
+                   "WHERE session_id >= %lld))",
+                   campaign, campaign, session > 0, (long long)session));
   TRY(sql_integer(store->db, "SELECT count(*) FROM temp.chosen_campaign", 0, &count, error));
-  if (count == 0)
+  if (count == 0 && campaign)
     return status_fail(error, STATUS_USAGE, "the store has no campaign '%.128s'; `clast status` lists them", campaign);
   TRY(sql_execute(store->db,
                   "DELETE FROM temp.chosen_point WHERE point_id NOT IN (SELECT point_id FROM main.campaign_point JOIN "
@@ -129,8 +130,8 @@ static status choose(struct store *store, const struct ask_choice *choice, struc
       "CREATE TEMP TABLE chosen_point (point_id INTEGER PRIMARY KEY); INSERT INTO temp.chosen_point SELECT "
       "point_id FROM main.point WHERE %lld IN (0, point_id)",
       (long long)choice->point));
-  if (choice->campaign)
-    TRY(choose_campaigns(store, choice->campaign, error));
+  if (choice->campaign || choice->session)
+    TRY(choose_campaigns(store, choice->campaign, choice->session, error));
   else if (choice->campaigns_alone && choice->point == 0)
     TRY(choose_campaigns_alone(store, error));
   if (choice->where)
@@ -151,8 +152,8 @@ status ask_choose(struct store *store, const struct ask_choice *choice, struct e
   store->left_out = 0;
   if (code == STATUS_OK)
     code = ask_register_functions(store, error);
-  if (code == STATUS_OK &&
-      (choice->point || choice->campaign || choice->where || choice->campaigns_alone || choice->axes))
+  if (code == STATUS_OK && (choice->point || choice->campaign || choice->session || choice->where ||
+                            choice->campaigns_alone || choice->axes))
     code = choose(store, choice, error);
   store->chosen[0] = '\0';
   if (choice->campaign)

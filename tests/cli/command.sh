@@ -334,6 +334,8 @@ for point in 2 3; do
   expect 0 "$clast" compare gone.db:1 gone.db:$point -Q x
   says "3 of 6 runs gave no result"
 done
+expect 0 "$clast" converge gone.yaml --knob a=4,6 -Q x --seeds 6 --within off --store gone.db $word # of its own runs alone
+says "6 of 12 runs gave no result"
 sed -i 's/a: \[2, 3, 9\]/a: [2, 4]/; s/^name: gone/name: all/' gone-runs.yaml # no run of a: 4 has a result
 sed 's/\$((\$2 % 2))/1/' gone.sh >all.sh && sed 's/gone/all/g' gone.yaml >all.yaml && sed 's/gone/all/g' gone-runs.yaml >all-runs.yaml
 expect 1 "$clast" run all-runs.yaml $word --quiet
@@ -437,4 +439,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 164
+done_after 165
