@@ -611,7 +611,8 @@ bool ask_points_next(struct answer *answer, struct ask_points_row *row) {
   return answer->code == STATUS_OK;
 }
 
-status ask_points_label(struct store *store, int64_t point_id, char *text, size_t size, struct error *error) {
+status ask_points_label(struct store *store, struct store *units, int64_t point_id, char *text, size_t size,
+                        struct error *error) {
   snprintf(text, size, "point %lld", (long long)point_id);
   ANSWER
   answer =
@@ -623,8 +624,12 @@ status ask_points_label(struct store *store, int64_t point_id, char *text, size_
     const char *path = answer_text(&answer, 0), *word = strrchr(path, '.');
     struct ask_column column = {.factor = 1};
     snprintf(column.unit, sizeof column.unit, "%s", answer_text(&answer, 2));
-    if (answer_value(&answer, 3).kind == QUERY_TEXT)
-      ask_columns_write_in(&column, answer_text(&answer, 3));
+    ANSWER other = answer_to(units, error, "SELECT written_unit FROM main.axis WHERE path = %Q", path);
+    const struct answer *written = units != store && answer_next(&other) ? &other : &answer;
+    const size_t place = written == &other ? 0 : 3;
+    if (answer_value(written, place).kind == QUERY_TEXT)
+      ask_columns_write_in(&column, answer_text(written, place));
+    TRY(answer_status(&other));
     const struct query_value value = answer_value(&answer, 1), shown = ask_columns_value(&column, &value);
     char number[64], item[256], unit[sizeof column.unit + 8];
     text_unit(column.unit, unit, sizeof unit);

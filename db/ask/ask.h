@@ -283,8 +283,10 @@ struct answer ask_points_rows(struct store *store, const struct ask_points_choic
 bool ask_points_next(struct answer *answer, struct ask_points_row *row);
 
 /* The varied inputs of a point by the last words of their paths, last path first: "strain 3 %, angle 4 deg".
- * Inputs that do not fit are left out. "point 7" when nothing was varied. */
-status ask_points_label(struct store *store, int64_t point_id, char *label, size_t size, struct error *error);
+ * Inputs that do not fit are left out. "point 7" when nothing was varied. units: in the units of this store, where it
+ * varies the input, too. */
+status ask_points_label(struct store *store, struct store *units, int64_t point_id, char *label, size_t size,
+                        struct error *error);
 
 /* The names of the scenes of all points: "disc-explosion", "a, b". */
 status ask_points_scenes(struct store *store, char *names, size_t size, struct error *error);

@@ -132,7 +132,8 @@ static status read_exponents(struct store *store, enum exponent_method method, e
 }
 
 /* The values of side k. */
-static status read_values(struct store *store, struct ask_pairs *pairs, int k, struct error *error) {
+static status read_values(struct store *const of_sides[2], struct ask_pairs *pairs, int k, struct error *error) {
+  struct store *store = of_sides[k];
   const char *quantity = pairs->quantity;
   struct side *side = &pairs->side[k];
   char column[ASK_GROUP_NAME];
@@ -154,7 +155,7 @@ static status read_values(struct store *store, struct ask_pairs *pairs, int k, s
   side->left_out = ask_choice_left_out(store);
   for (size_t i = 0; i < side->group_count; i++) {
     struct group *group = &side->groups[i];
-    TRY(ask_points_label(store, group->point, group->label, sizeof group->label, error));
+    TRY(ask_points_label(store, of_sides[0], group->point, group->label, sizeof group->label, error));
     TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = group->point},
                    exponent ? OUTCOME_NAME(mean_fragment_mass) : column, &group->doubts, error));
   }
@@ -269,7 +270,7 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
   TRY(open_side(second, *choice, &pairs->side[1], &b, error));
   TRY(ask_quantity_main(a, pairs->main, &pairs->quantity, error));
   for (int k = 0; k < 2; k++) {
-    TRY(read_values(k ? b : a, pairs, k, error));
+    TRY(read_values((struct store *const[]){a, b}, pairs, k, error));
     if (pairs->side[k].group_count == 0)
       return status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld",
                          k ? second : first, pairs->quantity);

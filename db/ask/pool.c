@@ -135,7 +135,7 @@ static status read_pool(struct ask_pools *pools, size_t from, size_t end, int64_
 static status write_label(struct ask_pools *pools, struct error *error) {
   struct ask_pool *pool = &pools->pool;
   if (pool->points == 1)
-    return ask_points_label(pools->store, pool->point[0], pool->label, sizeof pool->label, error);
+    return ask_points_label(pools->store, pools->store, pool->point[0], pool->label, sizeof pool->label, error);
   snprintf(pool->label, sizeof pool->label, "%s", pools->axes ? "" : "all points");
   for (size_t a = 0; a < pools->axes; a++) {
     char unit[72] = "", value[ASK_POOL_TEXT] = "off";

@@ -137,6 +137,12 @@ same "$(tail -n +2 out | cut -d , -f 1,2 | tr '\n' ' ')" "1,2 2,4 " "common poin
 says "without a partner: 2 of 4 points of b (strain 2 %, angle 2 deg; strain 5 %, angle 2 deg)"
 expect 0 "$clast" compare grid.db fixed.db --csv
 same "$(tail -n +2 out | wc -l)" 2 "common points of the stores the other way round"
+# A table has one unit for each input: that of its first store.
+sed 's/charge.energy: 2 kJ.m, //; s/^  threshold.strain.*/  charge.energy: [1000 J\/m, 2000 J\/m]/; s/fixed/joule/' fixed.yaml >joule.yaml
+sed 's/1000 J/1 kJ/; s/2000 J/2 kJ/; s/joule/kilo/' joule.yaml >kilo.yaml
+for name in joule kilo; do expect 0 "$clast" run $name.yaml --quiet; done
+expect 0 "$clast" compare joule.db kilo.db
+prints " energy 2×10^3 J/m "; ! grep -q "kJ" out || fail "two units in one column"
 # The difference of an exponent is of the common seeds, too: equal runs have none, whatever others a side has.
 sed 's/0.05 ms/1 ms/; s/per_point: 3/per_point: 9/; s/fixed/nine/' fixed.yaml >nine.yaml
 sed 's/per_point: 9/per_point: 7/; s/nine/seven/' nine.yaml >seven.yaml
@@ -382,4 +388,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 149
+done_after 152
