@@ -61,13 +61,13 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  int dimensions;
-  TRY(ask_pool_dimensions(store, &dimensions, error));
+  char kg[64]; /* none with runs of the plane and of space */
+  TRY(ask_columns_unit(store, OUTCOME_NAME(mean_fragment_mass), kg, sizeof kg, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){.inputs = true}, NULL, error);
   TABLE table = table_new(line->format, stdout);
   print_pool_columns(table, &pools);
-  table_column(table, "from", ask_pool_mass_unit(dimensions));
-  table_column(table, OUTCOME_NAME(complete_mass), ask_pool_mass_unit(dimensions));
+  table_column(table, "from", kg);
+  table_column(table, OUTCOME_NAME(complete_mass), kg);
   table_rare(table);
   table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
                                              "N(>L)_hw95", "distance", NULL});

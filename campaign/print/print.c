@@ -288,10 +288,10 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
 status print_spectrum(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                       struct error *error) {
   const bool sizes = choice->density > 0, people = table_for_people(format);
-  int dimensions;
-  TRY(ask_pool_dimensions(store, &dimensions, error));
-  const char *unit = sizes ? "m" : ask_pool_mass_unit(dimensions);
-  const char *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : dimensions == 2 ? "m/kg" : "1/kg";
+  char kg[64]; /* none with runs of the plane and of space */
+  TRY(ask_columns_unit(store, OUTCOME_NAME(mean_fragment_mass), kg, sizeof kg, error));
+  const char *unit = sizes ? "m" : kg, *per_kg = !*kg ? NULL : strcmp(kg, "kg/m") == 0 ? "m/kg" : "1/kg";
+  const char *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : per_kg;
   struct ask_pool_choice pool_choice = choice->pool;
   pool_choice.inputs = people;
   ASK_POOLS pools = ask_pools(store, &pool_choice, NULL, error);

@@ -143,6 +143,11 @@ sed 's/1000 J/1 kJ/; s/2000 J/2 kJ/; s/joule/kilo/' joule.yaml >kilo.yaml
 for name in joule kilo; do expect 0 "$clast" run $name.yaml --quiet; done
 expect 0 "$clast" compare joule.db kilo.db
 prints " energy 2×10^3 J/m "; ! grep -q "kJ" out || fail "two units in one column"
+expect 0 "$clast" merge kinds.db fixed.db own-rocks.db # masses per metre, and whole ones
+for of in spectrum exponents; do
+  expect 0 "$clast" $of kinds.db
+  ! sed '/^clast/d' out | grep -q "kg" || fail "one unit of masses in the plane and in space: $(head -2 out)"
+done
 # The difference of an exponent is of the common seeds, too: equal runs have none, whatever others a side has.
 sed 's/0.05 ms/1 ms/; s/per_point: 3/per_point: 9/; s/fixed/nine/' fixed.yaml >nine.yaml
 sed 's/per_point: 9/per_point: 7/; s/nine/seven/' nine.yaml >seven.yaml
@@ -388,4 +393,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 152
+done_after 155
