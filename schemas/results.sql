@@ -265,7 +265,7 @@ CREATE TABLE convergence_limit ( -- Limit of each knob of a study, for each quan
   results_version INTEGER NOT NULL, -- version of the engine's results
   knob TEXT, -- What was made coarser or finer.
   quantity TEXT, -- Result, as a column of the view runs. Its unit is that of the limit.
-  verdict TEXT, -- What all levels and seeds together tell. One of: too-few, constant, limit, no-limit
+  verdict TEXT, -- What all levels and seeds together tell. One of: too-few, constant, limit, no-limit, falling
   dropped INTEGER, -- [1] Coarse levels that the law does not describe.
   fit REAL, -- Share of the samples of the best law that lie farther from it than the levels; below 0.05 no law fits.
   fit_with REAL, -- The same with the finest of the dropped levels. Off: none is dropped.
@@ -910,7 +910,7 @@ INSERT INTO column_doc VALUES ('convergence_limit', 'quantity', NULL, 'Result, a
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'results_version', NULL, 'version of the engine''s results', 0);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'verdict', NULL, 'What all levels and seeds together tell. One of: too-few, constant, limit, no-limit', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'verdict', NULL, 'What all levels and seeds together tell. One of: too-few, constant, limit, no-limit, falling', 1);
 
 INSERT INTO column_doc VALUES ('ejecta', 'bin', NULL, 'number of a bin of speed: ten per decade, bin 0 starts at 1 m/s', 0);
 

@@ -207,11 +207,12 @@ const struct field_table convergence_table = FIELD_TABLE(rows, struct convergenc
                                                          "Levels of the knobs that a study has run.");
 
 static FIELD_WORDS(verdict_names, LIMIT_VERDICTS, [LIMIT_TOO_FEW] = "too-few", [LIMIT_CONSTANT] = "constant",
-                   [LIMIT_SEEN] = "limit", [LIMIT_NOT_SEEN] = "no-limit");
+                   [LIMIT_SEEN] = "limit", [LIMIT_NOT_SEEN] = "no-limit", [LIMIT_FALLING] = "falling");
 static const char *const verdict_docs = "fewer than three levels with a step, or fewer than three seeds\n"
                                         "all runs are equal, which tells no limit\n"
                                         "a law limit + a step^p agrees with the levels\n"
-                                        "no such law agrees with the three finest levels";
+                                        "no such law agrees with the three finest levels\n"
+                                        "none does, but the last change is smaller than the one before";
 static const struct field limit_rows[] = {
     LIMIT_TEXT(knob, .doc = "What was made coarser or finer."),
     LIMIT_TEXT(quantity, .doc = "Result, as a column of the view runs. Its unit is that of the limit."),

@@ -56,6 +56,7 @@ enum limit_verdict {
   LIMIT_CONSTANT, /* all runs of all levels are equal: nothing tells how far other runs may be */
   LIMIT_SEEN,     /* a law of the range agrees with the three finest levels at least */
   LIMIT_NOT_SEEN, /* none does, or none has a limit in the range of the result */
+  LIMIT_FALLING,  /* none does, but the last change is smaller than the one before by more than the slowest law asks */
   LIMIT_VERDICTS
 };
 
@@ -68,7 +69,7 @@ struct limit_law {
   enum limit_verdict verdict;
   size_t dropped;           /* coarse levels that the law does not describe */
   double fit;               /* share of the samples of the best law of one p that lie farther from it than the levels;
-                               LIMIT_NOT_SEEN: below 0.05 with any number of dropped levels */
+                               LIMIT_FALLING: below 0.05 with any number of dropped levels */
   double fit_with;          /* the same with one of the dropped levels; NaN: none is dropped */
   struct limit_range order; /* the range that the levels do not reject */
   struct limit_range limit; /* with the interval of the given confidence, as all others */

@@ -449,6 +449,14 @@ static double cost_of_range(const struct limit_ladder *ladder, const struct work
   return outside > 0 ? outside * outside / fmax(square - centre * centre, 0) : 0;
 }
 
+/* Is the last change smaller than the one before, at least by as much as the slowest law asks? */
+static bool falls(const struct data *data, double order) {
+  const size_t f = data->levels - 1;
+  const double coarse = pow(data->step[f - 2], order), fine = pow(data->step[f - 1], order);
+  const double share = (fine - pow(data->step[f], order)) / (coarse - fine);
+  return fabs(data->mean[f] - data->mean[f - 1]) <= share * fabs(data->mean[f - 1] - data->mean[f - 2]);
+}
+
 /* Makes all fits, and finds how many levels must be dropped. No limit is seen, too, where the laws that agree with the
  * levels have no possible one. */
 static void find_law(const struct limit_ladder *ladder, struct work *work, double rejected, struct limit_law *law) {
@@ -473,8 +481,10 @@ static void find_law(const struct limit_ladder *ladder, struct work *work, doubl
   law->fit = best_tail(work, law->dropped);
   if (law->dropped > 0)
     law->fit_with = best_tail(work, law->dropped - 1);
-  const bool seen = (law->fit >= REJECTED || low == high) && possible - best < rejected;
-  law->verdict = seen ? LIMIT_SEEN : LIMIT_NOT_SEEN;
+  const bool fits = law->fit >= REJECTED || low == high;
+  law->verdict = fits && possible - best < rejected ? LIMIT_SEEN
+                 : !fits && falls(&work->data, low) ? LIMIT_FALLING
+                                                    : LIMIT_NOT_SEEN;
 }
 
 static void find_change(const struct data *data, const struct noise *noise, double confidence, struct limit_law *law) {

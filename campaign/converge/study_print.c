@@ -186,8 +186,8 @@ static void print_change(const struct knob *knob, const struct study_found *foun
   const double factor = row[0] ? log(2) * fabs(knob->step_power) / log(row[0]->step / row[1]->step) : 1;
   const struct limit_range *change = &found->limit.change;
   uncertainty_number(factor * change->value, factor * (change->high - change->low) / 2, text);
-  fprintf(out, "no limit seen, moving by %s per %s of %s", text, knob->step_power < 0 ? "doubling" : "halving",
-          knob->inputs[0].path);
+  fprintf(out, "no limit %s, moving by %s per %s of %s", found->limit.verdict == LIMIT_FALLING ? "inferred" : "seen",
+          text, knob->step_power < 0 ? "doubling" : "halving", knob->inputs[0].path);
 }
 
 /* How many seeds show no difference between the levels of the knob, which adds nothing; 0: some do, it has no two
@@ -342,9 +342,10 @@ static status print_limit(const struct printing *printing, const struct study_la
   fprintf(out, "%s: ", limit->knob);
   if (limit->verdict == LIMIT_SEEN)
     print_seen(limit, found, out);
-  else if (limit->verdict == LIMIT_NOT_SEEN) {
+  else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING) {
     print_change(knob, found, out);
-    fputs(": the three finest levels do not follow limit + a step^p with p from 0.5 to 2", out);
+    fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
+    fputs(" the three finest levels do not follow limit + a step^p with p from 0.5 to 2", out);
     if (!seeds_are_equal(1, found))
       fprintf(out, " (if they did, chance would put them this far off in %s%.2g %% of studies)",
               limit->fit < 1e-5 ? "less than " : "", 100 * fmax(limit->fit, 1e-5));

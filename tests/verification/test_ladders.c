@@ -246,6 +246,30 @@ static void exact_levels(void **state) {
   assert_true(holds(&law.change, 0.1) && isnan(law.limit.value));
 }
 
+/* Two changes that fall faster than the steepest law (a shock between 50 and 400 points), that come back, and that
+ * grow. Two errors against each other look like the first, near the step where they turn: so no limit is inferred. */
+static void changes_that_fall(void **state) {
+  (void)state;
+  static const struct {
+    double mean[4];
+    enum limit_verdict verdict;
+  } cases[] = {{{1.9369, 1.9529, 1.956, 1.9561}, LIMIT_FALLING},
+               {{1.9361, 1.9529, 1.9561, 1.9553}, LIMIT_FALLING},
+               {{1.9529, 1.956, 1.953, 1.957}, LIMIT_NOT_SEEN}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    double values[4][MOST_SEEDS];
+    struct limit_law law;
+    for (size_t l = 0; l < 4; l++)
+      for (size_t s = 0; s < 4; s++)
+        values[l][s] = cases[i].mean[l];
+    struct limit_ladder ladder = ladder_of(4, 4, values);
+    ladder.most = HUGE_VAL;
+    assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
+    assert_int_equal(law.verdict, cases[i].verdict);
+    assert_true(isnan(law.limit.value) && isnan(law.distance[3].value));
+  }
+}
+
 static void ranges_and_equal_runs(void **state) {
   (void)state;
   double values[3][MOST_SEEDS];
@@ -280,7 +304,7 @@ static void ranges_and_equal_runs(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(exact_levels), cmocka_unit_test(ranges_and_equal_runs),
-                                     cmocka_unit_test(ladders)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(exact_levels), cmocka_unit_test(changes_that_fall),
+                                     cmocka_unit_test(ranges_and_equal_runs), cmocka_unit_test(ladders)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -103,7 +103,7 @@ static void predict(const struct ladder *ladder, size_t q, size_t finest, struct
     count->seen++;
     count->held += holds;
     verdict = holds ? "held" : "MISSED";
-  } else if (law.verdict == LIMIT_NOT_SEEN) {
+  } else if (law.verdict == LIMIT_NOT_SEEN || law.verdict == LIMIT_FALLING) {
     const struct convergence_difference moved = convergence_bias(ladder->seeds, ladder->value[q][finest],
                                                                  ladder->value[q][target], false, 0.95);
     const bool differs = fabs(moved.value) > moved.half_width;
@@ -146,7 +146,7 @@ static void print_ladder(const struct ladder *ladder, size_t q) {
   }
   if (law.verdict == LIMIT_SEEN)
     printf(" %.3g (%.3g to %.3g) |\n", law.limit.value, law.limit.low, law.limit.high);
-  else if (law.verdict == LIMIT_NOT_SEEN)
+  else if (law.verdict == LIMIT_NOT_SEEN || law.verdict == LIMIT_FALLING)
     printf(" not seen: moving by %.2g |\n", law.change.value);
   else
     printf(" - |\n");
