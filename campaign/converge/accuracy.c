@@ -193,7 +193,8 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   }
   if (resolution && row->open && row->reference)
     finding->beyond += left_beyond(finding, step_of(knob, row));
-  if (resolution && row->open && row->base && row->n == 0) /* no law reaches the scene's own level */
+  const bool finer = ran && finding->levels > 0 && step_of(knob, row) < finding->step[finding->levels - 1];
+  if (resolution && row->open && row->base && row->n == 0 && !finer) /* no law reaches the scene's own level */
     finding->beyond = NAN;
   if (resolution)
     finding->unstudied += row->reference - (row->base && (row->n > 0 || isfinite(row->resolution)));

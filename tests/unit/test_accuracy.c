@@ -260,6 +260,32 @@ static void levels_that_differ_little_are_enough(void **state) {
   campaign_free(campaign);
 }
 
+/* A study without time for the scene's own level, which is finer than all: the slowest law bounds what it may change,
+ * too. Coarser than all it may be anywhere. */
+static void an_own_level_that_did_not_run(void **state) {
+  (void)state;
+  static const struct level levels[2][4] = {{{"8e-6", 0.012, 1e-4, 5, false, true, 8e-6},
+                                             {"4e-6", 0.004, 1e-4, 10, false, true, 4e-6},
+                                             {"2e-6", 0.004, 1e-4, 20, false, true, 2e-6},
+                                             {"1e-6", 0.004, NAN, NAN, true, true, 1e-6}},
+                                            {{"1e-6", 0.012, NAN, NAN, true, true, 1e-6},
+                                             {"5e-7", 0.012, 1e-4, 5, false, true, 5e-7},
+                                             {"2.5e-7", 0.004, 1e-4, 10, false, true, 2.5e-7},
+                                             {"1.2e-7", 0.004, 1e-4, 20, false, true, 1.2e-7}}};
+  for (size_t coarser = 0; coarser < 2; coarser++) {
+    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.05}\n");
+    struct store *store = NULL;
+    struct accuracy accuracy;
+    assert_int_equal(store_open_writer(fixture_path(path, "left-out"), &store, NULL, 0, &error), STATUS_OK);
+    add_study(store, campaign, "time_step", 4, levels[coarser]);
+    assert_int_equal(store_close(store, &error), STATUS_OK);
+    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    assert_true((accuracy.chosen < accuracy.count) == !coarser);
+    accuracy_clear(&accuracy);
+    campaign_free(campaign);
+  }
+}
+
 /* Grains finer than any level, with the same time step: those whose step is above a quarter of the longest stable one
  * (engine/dem/scene/conditions.c) would be marked, so they are no options. With 0.0056 m it is a
  * fifth. */
@@ -418,6 +444,7 @@ int main(void) {
                                      cmocka_unit_test(a_share_is_one_of_the_settings_own_mean),
                                      cmocka_unit_test(no_error_is_larger_than_a_share_can_move),
                                      cmocka_unit_test(levels_that_differ_little_are_enough),
+                                     cmocka_unit_test(an_own_level_that_did_not_run),
                                      cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
                                      cmocka_unit_test(a_study_without_the_scenes_own_level),
                                      cmocka_unit_test(the_least_error_in_a_time),
