@@ -155,9 +155,10 @@ static void print_summary(const struct driver_summary *summary, const char *stor
             "%" PRId64 " run%s warned, %" PRId64 " of them in doubt in %s (!); means and stopping rules count %s\n",
             summary->runs_warned, text_plural(summary->runs_warned), summary->runs_doubtful, quantity,
             summary->runs_warned == 1 ? "it" : "them");
+  char word[TEXT_WORD];
   if (summary->attempts_failed)
     fprintf(stderr, "%" PRId64 " attempt%s failed: clast query %s --named failures\n", summary->attempts_failed,
-            text_plural(summary->attempts_failed), store);
+            text_plural(summary->attempts_failed), text_word(store, word));
   if (code == STATUS_STOPPED)
     fputs("stopped; the same command goes on\n", stderr);
 }
@@ -204,7 +205,8 @@ static status print_means(struct store *store, const char *path, int64_t campaig
   if (quiet)
     return STATUS_OK;
   quantity_tell_resolutions(store, quantity, &pooled);
-  fprintf(stderr, "fragments, M_1/M and exponents: clast estimates %s\n", path);
+  char word[TEXT_WORD];
+  fprintf(stderr, "fragments, M_1/M and exponents: clast estimates %s\n", text_word(path, word));
   return STATUS_OK;
 }
 
@@ -232,7 +234,7 @@ static status print_answers(const char *path, const struct campaign *document, i
   STORE store = NULL;
   const struct ask_points_choice choice = {.campaign = campaign};
   int64_t points = 0, missing, wanted;
-  char number[24];
+  char number[24], word[TEXT_WORD];
   snprintf(number, sizeof number, "%" PRId64, campaign);
   TRY(store_open_reader(path, &store, error));
   TRY(ask_points_count(store, &choice, &points, error));
@@ -246,8 +248,8 @@ static status print_answers(const char *path, const struct campaign *document, i
   if (quiet && format == TABLE_TEXT)
     format = TABLE_BARE;
   if (points > MANY_POINTS)
-    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
-            campaign);
+    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points,
+            text_word(path, word), campaign);
   else if (strcmp(quantity, OUTCOME_DEFAULT) != 0 && strncmp(quantity, "beta", 4) != 0)
     TRY(print_means(store, path, campaign, quantity, format, quiet, error));
   else

@@ -168,4 +168,9 @@ prints "+x"
 expect 0 "$clast" run few.yaml --seeds 3 --quiet
 expect 0 "$clast" plot few.db weak.svg -x strain --by angle -Q largest_fraction
 tr -s '\n' ' ' <weak.svg | sed 's/<[^>]*>/ /g' | tr -s ' ' | grep -q 'of the marks: a weak interval' || fail "a plot without a word on weak intervals"
-done_after 49
+# The command below the table of a run takes a store with a blank in its name.
+printf '%s\n' 'name: one plate' 'scene: porous-plate' 'set: {fidelity.points: 50}' 'seeds: 2' >plate.yaml
+expect 0 "$clast" run plate.yaml
+next=$(sed -n 's/^fragments, .*: clast /"$clast" /p' err)
+expect 0 bash -c "clast='$clast'; $next"
+done_after 51
