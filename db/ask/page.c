@@ -141,7 +141,8 @@ enum { COLUMNS = 256, NAME = 128 };
 
 struct column {
   char name[NAME];
-  bool main; /* of the view points */
+  bool main;  /* of the view points */
+  bool asked; /* the quantity of a campaign, by its document or its scene */
   struct sample_range range;
   bool number; /* has a value */
   double least, most;
@@ -163,6 +164,11 @@ struct reading {
 
 static bool varies(const struct column *column) {
   return column->most > column->least;
+}
+
+/* Results with the same value in all runs are left out. */
+static bool is_told(const struct column *column) {
+  return column->asked || varies(column);
 }
 
 static bool is_main(const char *name) {
@@ -297,12 +303,13 @@ static status thin_means(struct reading *reading, struct error *error) {
   TRY(tell_elements(reading, error));
   int64_t rows = 0, points = 0;
   for (size_t i = 0; i < reading->count; i++)
-    if (reading->column[i].number && !varies(&reading->column[i]) && !spectrum_needs(reading->column[i].name))
+    if (reading->column[i].number && !is_told(&reading->column[i]) && !spectrum_needs(reading->column[i].name))
       TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
   TRY(sql_integer(db, "SELECT count(*) FROM means", 0, &rows, error));
   TRY(sql_integer(db, "SELECT count(DISTINCT point_id) FROM means", 0, &points, error));
   for (size_t i = reading->count; rows > MEANS && i-- > 0;) {
-    if (reading->column[i].main || !varies(&reading->column[i]) || spectrum_needs(reading->column[i].name))
+    if (reading->column[i].main || reading->column[i].asked || !varies(&reading->column[i]) ||
+        spectrum_needs(reading->column[i].name))
       continue;
     TRY(sql_executef(db, doing, error, "DELETE FROM means WHERE quantity = %Q", reading->column[i].name));
     rows -= points;
@@ -336,7 +343,7 @@ static void write_results(const struct reading *reading, double runs, sqlite3_st
   for (int main = 1; main >= 0; main--)
     for (size_t i = 0; i < reading->count; i++) {
       const struct column *column = &reading->column[i];
-      if (column->main != main || (!main && !varies(column)))
+      if (column->main != main || (!main && !is_told(column)))
         continue;
       if (!main && room == 0) {
         ++*left_out;
@@ -431,6 +438,16 @@ static status add_doubts(struct reading *reading, struct store *store, struct er
   return add_sentences(reading, error);
 }
 
+static status find_asked(struct reading *reading, struct store *store, struct error *error) {
+  char name[ASK_GROUP_NAME];
+  ANSWER names = answer_to(store, error, "SELECT DISTINCT plan ->> '$.quantity' FROM campaign WHERE json_valid(plan)");
+  while (answer_next(&names))
+    for (size_t i = 0; i < reading->count; i++)
+      if (ask_group_quantity(store, answer_text(&names, 0), name, NULL) == STATUS_OK)
+        reading->column[i].asked |= strcmp(reading->column[i].name, name) == 0;
+  return answer_end(&names);
+}
+
 static status fill_runs(struct reading *reading, struct store *store, struct error *error) {
   sqlite3 *db = reading->page->store.db;
   TRY(ask_register_functions(store, error));
@@ -450,6 +467,7 @@ static status fill_runs(struct reading *reading, struct store *store, struct err
     column->range = views_range(column->name);
   }
   TRY(answer_end(&names));
+  TRY(find_asked(reading, store, error));
   TRY(read_results(reading, store, error));
   TRY(thin_means(reading, error));
   TRY(add_doubts(reading, store, error));

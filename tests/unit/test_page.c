@@ -96,6 +96,32 @@ static void test_a_small_store_is_whole(void **state) {
   store_close(store, NULL);
 }
 
+/* A result that is the same in all runs is left out, but not where a campaign asks for it. */
+static void test_the_quantity_of_a_campaign_is_told(void **state) {
+  (void)state;
+  for (int asked_for = 0; asked_for < 2; asked_for++) {
+    char path[64];
+    store_close(filled("page-quantity", 5, path), NULL);
+    struct store *store = NULL;
+    struct ask_page *page = NULL;
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "UPDATE result_fake SET hardest = 4", NULL, NULL, NULL), SQLITE_OK);
+    if (asked_for)
+      assert_int_equal(sqlite3_exec(db, "UPDATE campaign SET plan = '{\"quantity\": \"hardest\"}'", NULL, NULL, NULL),
+                       SQLITE_OK);
+    sqlite3_close(db);
+    OK(store_open_reader(path, &store, &error));
+    OK(ask_page_make(store, &page, &error));
+    db = opened(page);
+    assert_near(asked(db, "SELECT count(*) FROM pragma_table_info('runs') WHERE name = 'hardest'"), asked_for, 0);
+    assert_near(asked(db, "SELECT count(*) FROM means WHERE quantity = 'hardest'"), asked_for ? M * K : 0, 0);
+    sqlite3_close(db);
+    ask_page_free(page);
+    store_close(store, NULL);
+  }
+}
+
 static void test_a_large_store_is_thinned(void **state) {
   (void)state;
   char path[64];
@@ -194,9 +220,8 @@ static void test_a_page_needs_a_place_for_data(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_small_store_is_whole),
-      cmocka_unit_test(test_a_large_store_is_thinned),
-      cmocka_unit_test(test_two_modes_are_told),
+      cmocka_unit_test(test_a_small_store_is_whole),        cmocka_unit_test(test_the_quantity_of_a_campaign_is_told),
+      cmocka_unit_test(test_a_large_store_is_thinned),      cmocka_unit_test(test_two_modes_are_told),
       cmocka_unit_test(test_a_page_needs_a_place_for_data),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
