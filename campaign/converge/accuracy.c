@@ -12,6 +12,7 @@
 #include "engine/grow.h"
 #include "schemas/memory.h"
 
+#define SMALL 0.1 /* of what is allowed: so much of a knob of two levels stops no answer */
 enum {
   FEWEST_SEEDS = 3,
   MOST_SEEDS = 10000,
@@ -94,14 +95,28 @@ static double finer_by(const struct knob *knob) {
   return knob->step_power > 0 ? 0.5 : 2;
 }
 
-/* What a law of the least order leaves at the finest level, by its changes from at least two coarser ones. NaN: not
- * known. */
+/* What a law of the least order leaves at the finest level, by its changes from coarser ones. NaN: not known. */
 static double left_beyond(const struct finding *finding, double step) {
   double most = NAN;
-  for (size_t l = 0; l < finding->levels && finding->levels > 1; l++)
+  for (size_t l = 0; l < finding->levels; l++)
     if (finding->change[l] > 0 && finding->step[l] > step)
       most = fmax(most, finding->change[l] / (pow(finding->step[l] / step, LIMIT_ORDER_LEAST) - 1));
   return most;
+}
+
+/* What a setting with this mean may be off. NaN: a time is given, not an accuracy. */
+static double allowed(const struct campaign *campaign, double mean) {
+  return campaign->accuracy_within * (campaign->accuracy_of_value ? fabs(mean) : 1);
+}
+
+/* Adds what the knob leaves beyond its finest level, `row`. One change may be small by chance: it counts only where it
+ * is a small part of what is allowed, and then the knob is none that lacks a limit. */
+static void add_beyond(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
+  const double left = left_beyond(finding, step_of(knob, row));
+  const bool small = left < SMALL * allowed(finding->campaign, row->mean);
+  if (small && finding->accuracy->open == knob)
+    finding->accuracy->open = NULL;
+  finding->beyond += finding->levels > 1 || small ? left : (double)NAN;
 }
 
 /* Is the setting a level that a study of the knob has without a word of the user? */
@@ -192,7 +207,7 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->accuracy->widest_value = strtod(row->setting, NULL);
   }
   if (resolution && row->open && row->reference)
-    finding->beyond += left_beyond(finding, step_of(knob, row));
+    add_beyond(finding, knob, row);
   const bool finer = ran && finding->levels > 0 && step_of(knob, row) < finding->step[finding->levels - 1];
   if (resolution && row->open && row->base && row->n == 0 && !finer) /* no law reaches the scene's own level */
     finding->beyond = NAN;
@@ -251,7 +266,7 @@ static status add_option(struct finding *finding, const struct convergence_row *
   option->mean = own ? finding->own_mean : row->mean;
   option->n = own ? finding->own_n : row->n;
   option->most = most_of(option->share, option->mean);
-  option->within = finding->campaign->accuracy_within * (finding->campaign->accuracy_of_value ? fabs(option->mean) : 1);
+  option->within = allowed(finding->campaign, option->mean);
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
     option->beyond = isnan(finding->beyond) ? (double)NAN : fmin(finding->beyond, option->most - option->error);
   const double whole = option->extrapolated ? row->error : option->error; /* row: the finest with runs */
@@ -534,7 +549,7 @@ static status need_at(const struct finding *finding, struct store *store, const 
     if (level.n > 0 && isfinite(level.error) &&
         (chosen->own ? level.base
                      : strcmp(level.knob, chosen->knob) == 0 && strcmp(level.setting, chosen->setting) == 0)) {
-      const double within = campaign->accuracy_within * (campaign->accuracy_of_value ? fabs(level.mean) : 1);
+      const double within = allowed(campaign, level.mean);
       *row = level;
       *need = level.error / (isnan(within) ? chosen->error : within);
     }
@@ -788,6 +803,17 @@ static const char *show_width(const struct campaign *campaign, char *text, size_
   return text;
 }
 
+/* Would a setting reach this accuracy? */
+static bool is_reached(const struct accuracy *accuracy, const struct campaign *campaign, double within) {
+  bool is = false;
+  for (size_t i = 0; i < accuracy->count; i++) {
+    const struct accuracy_option *option = &accuracy->options[i];
+    const double margin = within * (campaign->accuracy_of_value ? fabs(option->mean) : 1) - resolution_of(option);
+    is |= !isnan(option->beyond) && accuracy_seeds(option->mean, option->deviation, margin, option->share) > 0;
+  }
+  return is;
+}
+
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
@@ -813,9 +839,12 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
     advise_levels(accuracy, campaign, finest, next, sizeof next);
   else
     advise_seeds(accuracy, campaign, best, next, sizeof next);
-  if (1.3 * least < fmin(fabs(best->mean), best->most) && 1.3 * least > best->within)
-    text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %.2g%s}`, or ", quantity,
-                campaign->accuracy_of_value ? 130 * least / fabs(best->mean) : 1.3 * least,
+  char wider[32];
+  const double percent = campaign->accuracy_of_value ? 100 / fabs(best->mean) : 1;
+  snprintf(wider, sizeof wider, "%.2g", 1.3 * least * percent);
+  if (1.3 * least < fmin(fabs(best->mean), best->most) && 1.3 * least > best->within &&
+      is_reached(accuracy, campaign, strtod(wider, NULL) / (campaign->accuracy_of_value ? 100 : 1)))
+    text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %s%s}`, or ", quantity, wider,
                 campaign->accuracy_of_value ? " %" : unit);
   snprintf(smallest, sizeof smallest,
            "The smallest error is %s%.2g%s%s%s, with %s%s mean is %.4g%s (%" PRId64 " seeds)",

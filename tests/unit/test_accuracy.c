@@ -286,6 +286,34 @@ static void an_own_level_that_did_not_run(void **state) {
   }
 }
 
+/* A larger error is offered where it would be accepted. A knob of two levels has no known rest, which stops the answer
+ * only if it moves the result. */
+static void what_is_offered_is_accepted(void **state) {
+  (void)state;
+  static const double moves[] = {1e-5, 0.02};
+  for (size_t i = 0; i < 2; i++) {
+    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+    struct store *store = NULL;
+    assert_int_equal(store_open_writer(fixture_path(path, "offered"), &store, NULL, 0, &error), STATUS_OK);
+    add_study(store, campaign, "time_step", 2,
+              (const struct level[]){{"1e-6", moves[i], 1e-4, 10, true, true, 1e-6},
+                                     {"5e-7", moves[i], 1e-4, 20, false, true, 5e-7}});
+    add_study(store, campaign, "grains", 2,
+              (const struct level[]){{"0.01069", 0.06, 1e-4, 10, true, false, 0.01069},
+                                     {"0.008", 0.05, 1e-4, 20, false, false, 0.008}});
+    assert_int_equal(store_close(store, &error), STATUS_OK);
+    assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
+    static const char words[] = "such as `accuracy: {quantity: largest_fraction, within: ";
+    const char *offer = strstr(error.message, words);
+    assert_true(!offer == (i == 1));
+    if (offer) {
+      campaign->accuracy_within = strtod(offer + strlen(words), NULL);
+      assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_OK);
+    }
+    campaign_free(campaign);
+  }
+}
+
 /* Grains finer than any level, with the same time step: those whose step is above a quarter of the longest stable one
  * (engine/dem/scene/conditions.c) would be marked, so they are no options. With 0.0056 m it is a
  * fifth. */
@@ -445,6 +473,7 @@ int main(void) {
                                      cmocka_unit_test(no_error_is_larger_than_a_share_can_move),
                                      cmocka_unit_test(levels_that_differ_little_are_enough),
                                      cmocka_unit_test(an_own_level_that_did_not_run),
+                                     cmocka_unit_test(what_is_offered_is_accepted),
                                      cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
                                      cmocka_unit_test(a_study_without_the_scenes_own_level),
                                      cmocka_unit_test(the_least_error_in_a_time),
