@@ -95,6 +95,21 @@ void field_members(const struct field_table *table, const char *section, const c
   }
 }
 
+/* Is one of a section's words near `word`? */
+static bool is_near_in(const struct field_table *table, const char *section, const char *word) {
+  char prefix[FIELD_TEXT_SIZE + 2] = "", part[FIELD_TEXT_SIZE];
+  struct text_guess guess = text_guess(word);
+  text_append(prefix, sizeof prefix, "%s.", section);
+  const size_t length = strlen(prefix);
+  for (size_t i = 0; i < table->count; i++) {
+    const size_t known = field_first_word(table, i, prefix, length);
+    snprintf(part, sizeof part, "%.*s", (int)known, table->rows[i].path + (known ? length : 0));
+    if (known)
+      text_guess_offer(&guess, part);
+  }
+  return guess.nearest;
+}
+
 static void fail_unknown(const struct field_table *table, const char *path, struct error *error) {
   char members[512];
   field_members(table, path, "'", members, sizeof members);
@@ -103,8 +118,16 @@ static void fail_unknown(const struct field_table *table, const char *path, stru
                 path, table->name, members);
     return;
   }
-  char near[FIELD_NEAR_SIZE];
-  if (field_nearest(table, path, near))
+  char near[FIELD_NEAR_SIZE], section[FIELD_TEXT_SIZE] = "";
+  const char *const dot = strrchr(path, '.');
+  if (dot)
+    snprintf(section, sizeof section, "%.*s", (int)(dot - path), path);
+  field_members(table, section, "", members, sizeof members);
+  const bool found = field_nearest(table, path, near), same_word = dot && text_ends_in_words(near, dot + 1, ".");
+  if (*section && *members && !same_word && !is_near_in(table, section, dot + 1))
+    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; known in '%s' are %s", table->name, QUOTE, path, section,
+                members);
+  else if (found)
     status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; did you mean '%s'?", table->name, QUOTE, path, near);
   else
     status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; 'clast explain' lists what it has", table->name, QUOTE,

@@ -155,6 +155,11 @@ static status take_value(struct parse *parse, size_t index, const char *text, st
     return STATUS_OK;
   case OPTION_LIST: {
     struct option_list *list = slot;
+    const size_t name = strcspn(text, "=") + 1; /* of NAME=VALUE: one name has one value */
+    for (size_t i = 0; strchr(text, '=') && i < list->count; i++) {
+      if (strncmp(list->items[i], text, name) == 0)
+        return strcmp(list->items[i], text) == 0 ? STATUS_OK : take_again(row, &list->items[i], text, error);
+    }
     if (list->count == sizeof list->items / sizeof list->items[0])
       return status_fail(error, STATUS_USAGE, "--%s is given more than %zu times", row->name, list->count);
     list->items[list->count++] = text;
@@ -317,7 +322,7 @@ static status set_input(struct scene *scene, const char *text, char path[FIELD_T
   return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the wrong content is on the command line */
 }
 
-/* Of two changes under one name the last holds. Two names of one input are a mistake, as in a campaign. */
+/* Two names of one input are a mistake, as in a campaign. */
 status option_set_inputs(struct scene *scene, const struct option_list *set, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
   for (size_t i = 0; i < set->count; i++) {

@@ -110,10 +110,16 @@ for words in "simulate disc-explosion" "explain disc-explosion" "converge disc-e
   expect 64 bash -c "'$clast' $words --set contact.friction=0.1 --set friction=0.2"
   says "--set friction: the same input as --set contact.friction"
 done
-expect 0 "$clast" explain disc-explosion --set friction=0.1 --set friction=0.2
+for words in "simulate disc-explosion" "explain disc-explosion" "plan any.yaml"; do
+  expect 64 bash -c "'$clast' $words --set friction=0.1 --set friction=0.2"
+  says "--set is given twice, as \"friction=0.1\" and \"friction=0.2\""
+done
+# a wrong name in a section: what is in it
+expect 64 "$clast" simulate basalt-sphere --set target.shape=box --set target.side='3 cm'
+says "no 'target.side'; known in 'target' are shape, "; says "width, depth, height"
 
 # a device that never ends is no input
 for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
   expect 65 bash -c "ulimit -t 10; [ $sanitized -ne 0 ] || ulimit -v 20000000; exec '$clast' $words" # a sanitizer maps terabytes
 done
-done_after 55
+done_after 58

@@ -127,6 +127,8 @@ static void finds_by_suffix(void **state) {
   assert_null(field_find(&table, "machine.length", &error)); /* the last word has no fault: not a short word near */
   assert_string_equal(error.message,
                       "the thing has no 'machine.length'; did you mean 'body.length' or 'other.length'?");
+  assert_null(field_find(&table, "body.side", &error)); /* nothing in the section is near */
+  assert_string_equal(error.message, "the thing has no 'body.side'; known in 'body' are length, limit, count");
   assert_null(field_find(&table, "limt", &error));
   assert_string_equal(error.message, "the thing has no 'limt'; did you mean 'body.limit'?");
   assert_null(field_find(&table, "zzzzzz", &error));

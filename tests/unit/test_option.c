@@ -51,11 +51,11 @@ static void test_values(void **state) {
   assert_string_equal(options.file, "out.db");
   assert_false(options.loud);
   assert_int_equal(options.set.count, 0);
-  assert_int_equal(parse(&options, &line, &error, "test -lj 8 a --set x=1 --file=f --set y=-2 b"), STATUS_OK);
+  assert_int_equal(parse(&options, &line, &error, "test -lj 8 a --set x=1 --file=f --set y=-2 --set x=1 b"), STATUS_OK);
   assert_true(options.loud);
   assert_int_equal(options.slots, 8);
   assert_string_equal(options.file, "f");
-  assert_int_equal(options.set.count, 2);
+  assert_int_equal(options.set.count, 2); /* what is given again adds nothing */
   assert_string_equal(options.set.items[1], "y=-2");
   assert_int_equal(line.count, 2);
   assert_int_equal(parse(&options, &line, &error, "test --csv a"), STATUS_OK);
@@ -84,6 +84,7 @@ static void test_refusals(void **state) {
       {"test", "needs A [B]"},
       {"test a b c", "\"c\""},
       {"test a --json --csv", "exclude each other"},
+      {"test a --set x=1 --set y=1 --set x=2", "--set is given twice, as \"x=1\" and \"x=2\": leave one of them out"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct options options;
