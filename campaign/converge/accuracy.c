@@ -18,8 +18,7 @@ enum {
   MOST_SEEDS = 10000,
   STUDY_SEEDS = 1000,    /* a study with more is no advice */
   STUDY_FIRST_SEEDS = 4, /* of `clast converge` without --seeds */
-  LOOKED_AT = 1000,
-  UNIT_TEXT = 32 /* with the space before it */
+  LOOKED_AT = 1000
 };
 
 int64_t accuracy_seeds(double mean, double deviation, double margin, bool share) {
@@ -521,17 +520,6 @@ static status read_points(struct finding *finding, struct store *store, struct e
   return STATUS_OK;
 }
 
-/* The unit of the accurate quantity, with a space before it; "" for plain numbers. */
-static const char *width_unit(const struct campaign *campaign, char text[UNIT_TEXT]) {
-  struct error ignored;
-  bool of_outcome;
-  const struct field *row = campaign_quantity(campaign->scene->kind, campaign->accuracy_quantity, &of_outcome,
-                                              &ignored);
-  const char *unit = row ? field_shown_unit(row) : "";
-  snprintf(text, UNIT_TEXT, "%s%s", *unit ? " " : "", unit);
-  return text;
-}
-
 /* The error of the chosen setting at another point against what is allowed there; 0: that point has no study of it. */
 static status need_at(const struct finding *finding, struct store *store, const struct scene *scene,
                       struct convergence_row *row, double *need, struct error *error) {
@@ -568,7 +556,7 @@ static status name_widest(const struct finding *finding, struct store *store, st
   for (int i = 0; i < LOOKED_AT && campaign_walk_next(&walk); i++) {
     struct error ignored;
     struct convergence_row row = {.error = 0};
-    char inputs[256], told[UNCERTAINTY_TEXT], unit[UNIT_TEXT];
+    char inputs[256], told[UNCERTAINTY_TEXT], unit[CAMPAIGN_UNIT];
     SCENE scene = campaign_walk_scene(&walk, &ignored);
     if (!scene)
       continue;
@@ -579,7 +567,8 @@ static status name_widest(const struct finding *finding, struct store *store, st
     snprintf(accuracy->widest_point, sizeof accuracy->widest_point,
              "point %d, %s, was studied, too, and its error is larger: %s%s with the mean %.3g", i + 1,
              design_axis_show_point(campaign->axis_count, campaign->axes, scene->inputs, inputs, sizeof inputs),
-             study_show_error(row.error, row.at_least, told), width_unit(campaign, unit), row.mean);
+             study_show_error(row.error, row.at_least, told),
+             campaign_unit(campaign, campaign->accuracy_quantity, unit), row.mean);
   }
   return STATUS_OK;
 }
@@ -737,7 +726,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
   const double error = resolution_of(best), middle = best->middle * error;
   const double factor = error > 0 ? (error - middle) / (best->within - middle) : 2; /* 0: no run differs yet */
   const double seeds = ceil((double)best->n * factor * factor);
-  char text[UNIT_TEXT];
+  char text[CAMPAIGN_UNIT];
   if (middle >= best->within || seeds > STUDY_SEEDS) {
     if (middle < best->within && error > 0)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
@@ -745,7 +734,7 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
       text_append(
           next, size,
           "More seeds are not likely to help: they narrow the interval of this error, and leave about %.2g%s of it",
-          middle, width_unit(campaign, text));
+          middle, campaign_unit(campaign, campaign->accuracy_quantity, text));
     text_append(next, size, ". No setting that was studied is enough");
     if (middle >= best->within && accuracy->widest) {
       text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it", accuracy->widest->name);
@@ -796,10 +785,10 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
 
 /* "0.02 m/s", "5 % of its mean". Returns text. */
 static const char *show_width(const struct campaign *campaign, char *text, size_t size) {
-  char unit[UNIT_TEXT];
+  char unit[CAMPAIGN_UNIT];
   const bool share = campaign->accuracy_of_value;
   snprintf(text, size, "%.3g%s", campaign->accuracy_within * (share ? 100 : 1),
-           share ? " % of its mean" : width_unit(campaign, unit));
+           share ? " % of its mean" : campaign_unit(campaign, campaign->accuracy_quantity, unit));
   return text;
 }
 
@@ -819,8 +808,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", width[64], share[64] = "", more[256] = "", chosen[256], smallest[1200], text[UNIT_TEXT];
-  const char *unit = width_unit(campaign, text);
+  char next[1600] = "", width[64], share[64] = "", more[256] = "", chosen[256], smallest[1200], text[CAMPAIGN_UNIT];
+  const char *unit = campaign_unit(campaign, campaign->accuracy_quantity, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share,
@@ -899,8 +888,8 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   bool guessed = !people; /* people see the guesses if there are any */
   for (size_t i = 0; i < accuracy->count; i++)
     guessed |= accuracy->options[i].beyond > 0;
-  char unit_text[UNIT_TEXT];
-  const char *unit = width_unit(campaign, unit_text) + (*unit_text == ' ');
+  char unit_text[CAMPAIGN_UNIT];
+  const char *unit = campaign_unit(campaign, campaign->accuracy_quantity, unit_text) + (*unit_text == ' ');
   TABLE table = table_new(format, out);
   table_columns(table, (const char *const[]){"choice", "knob", "setting", NULL});
   table_column(table, "mean", unit);
@@ -955,8 +944,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
   const bool in_time = !isnan(accuracy->point_s);
-  char time[32], allowed[32], chosen[256], cost[120] = "", share[64] = "", text[UNIT_TEXT];
-  const char *unit = width_unit(campaign, text);
+  char time[32], allowed[32], chosen[256], cost[120] = "", share[64] = "", text[CAMPAIGN_UNIT];
+  const char *unit = campaign_unit(campaign, campaign->accuracy_quantity, text);
   name_option(campaign, option, chosen, sizeof chosen);
   if (option->beyond > 0)
     words_print(out, before,

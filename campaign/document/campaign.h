@@ -132,6 +132,9 @@ uint64_t campaign_seed(const struct campaign *campaign, const struct scene *poin
  */
 const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,
                                       struct error *error);
+/* The unit that users see after numbers of a quantity, with a blank before it; "" for plain numbers. Returns text. */
+enum { CAMPAIGN_UNIT = 32 };
+const char *campaign_unit(const struct campaign *campaign, const char *quantity, char text[CAMPAIGN_UNIT]);
 /* Value of a quantity in a finished run; NaN when the run failed (outcome states other than completed and end_time). */
 double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result);
 

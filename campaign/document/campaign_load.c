@@ -145,6 +145,15 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
   return row;
 }
 
+const char *campaign_unit(const struct campaign *campaign, const char *quantity, char text[CAMPAIGN_UNIT]) {
+  struct error ignored;
+  bool of_outcome;
+  const struct field *row = campaign_quantity(campaign->scene->kind, quantity, &of_outcome, &ignored);
+  const char *unit = row ? field_shown_unit(row) : "";
+  snprintf(text, CAMPAIGN_UNIT, "%s%s", *unit ? " " : "", unit);
+  return text;
+}
+
 double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result) {
   if (!outcome_is_usable(outcome->state))
     return NAN;

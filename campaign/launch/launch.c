@@ -166,16 +166,18 @@ static void print_summary(const struct driver_summary *summary, const char *stor
 /* Points that ended at seeds.max before seeds.until was met. The rule asks for more runs than a narrow interval needs.
  */
 static void warn_unmet(const struct campaign *campaign, const struct driver_summary *summary) {
-  char asked[FIELD_TEXT_SIZE], width[UNCERTAINTY_TEXT + 96] = "is not known", runs[64] = "how many is not known";
+  char asked[FIELD_TEXT_SIZE], unit[CAMPAIGN_UNIT] = " %", width[UNCERTAINTY_TEXT + 96] = "is not known",
+                               runs[64] = "how many is not known";
   const uint64_t unmet = summary->points_cap_reached;
   const double one = campaign->until_of_value ? 100 / fabs(summary->widest_mean) : 1;
   if (unmet == 0)
     return;
-  snprintf(asked, sizeof asked, campaign->until_of_value ? "%g %% of the mean" : "%g",
-           campaign->until_half_width * (campaign->until_of_value ? 100 : 1));
+  if (!campaign->until_of_value)
+    campaign_unit(campaign, campaign->until_quantity, unit);
+  snprintf(asked, sizeof asked, "%g%s%s", campaign->until_half_width * (campaign->until_of_value ? 100 : 1), unit,
+           campaign->until_of_value ? " of the mean" : "");
   if (isfinite(summary->widest_half_width))
-    snprintf(width, sizeof width, "is ± %.2g%s%s", summary->widest_half_width * one,
-             campaign->until_of_value ? " %" : "",
+    snprintf(width, sizeof width, "is ± %.2g%s%s", summary->widest_half_width * one, unit,
              summary->widest_half_width * one > campaign->until_half_width * (campaign->until_of_value ? 100 : 1)
                  ? ""
                  : ": narrow enough, but the rule takes more runs before it trusts one (clast explain seeds.until)");

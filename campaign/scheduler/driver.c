@@ -570,11 +570,12 @@ static double time_left(struct driver *driver, double now) {
   return driver->seconds_left;
 }
 
-/* The widest interval of the points that the stopping rule has tested and not ended. 0: none. */
-static double widest_reached(const struct driver *driver) {
-  double widest = 0;
+/* The point with the widest interval of those that the stopping rule has tested and not ended. NULL: none. */
+static const struct point *widest_reached(const struct driver *driver) {
+  const struct point *widest = NULL;
   for (size_t i = 0; i < driver->point_count; i++)
-    widest = fmax(widest, driver->points[i]->decided ? 0 : driver->points[i]->reached);
+    if (!driver->points[i]->decided && driver->points[i]->reached > (widest ? widest->reached : 0))
+      widest = driver->points[i];
   return widest;
 }
 
@@ -595,6 +596,8 @@ static void tick(void *context, int running, bool last) {
     mean.half_width = mean.low = mean.high = NOTHING;
   const int64_t least = (int64_t)points * campaign_replicates_least(driver->campaign), /* as `plan` tells it */
       total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign);
+  const struct point *widest = last ? NULL : widest_reached(driver);
+  char unit[CAMPAIGN_UNIT];
   struct progress_state state = {
       .done = summary->runs_done + summary->runs_reused - summary->runs_surplus,
       .failed = summary->runs_failed,
@@ -606,7 +609,9 @@ static void tick(void *context, int running, bool last) {
       /* The table has the mean of the runs that count; those of a study differ in their settings. */
       .quantity = last || driver->in_series ? NULL : driver->row->path,
       .mean = mean,
-      .reached = last ? 0 : widest_reached(driver),
+      .reached = widest ? widest->reached : 0,
+      .point = widest && points > 1 ? widest->id : 0,
+      .unit = campaign_unit(driver->campaign, driver->campaign->until_quantity, unit),
       .asked = driver->campaign->until_half_width,
       .of_mean = driver->campaign->until_of_value,
       .doubtful = summary->runs_doubtful > 0,

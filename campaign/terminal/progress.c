@@ -66,7 +66,7 @@ void progress_duration(double seconds, char *buffer, size_t size) {
 /* The facts, without bar: "120 of 400 runs, 2 failed, 4 running, 3.1 runs/s, 1 min 30 s left, largest_fraction 0.312 +-
  * 0.008 (seeds, 95 %)" */
 static void facts(const struct progress_state *state, char *buffer, size_t size) {
-  char left[32], failed[48] = "", rate[48] = "", time[64] = "", mean[128] = "", rule[64] = "";
+  char left[32], failed[48] = "", rate[48] = "", time[64] = "", mean[128] = "", rule[160] = "";
   progress_duration(state->seconds_left, left, sizeof left);
   if (state->failed)
     snprintf(failed, sizeof failed, ", %lld failed", (long long)state->failed);
@@ -79,10 +79,13 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     uncertainty_seeds(&state->mean, both);
     snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, state->doubtful ? " !" : "");
   }
-  const char *percent = state->of_mean ? " %" : "";
+  const char *unit = state->of_mean ? " %" : state->unit ? state->unit : "";
+  char point[32] = "";
+  if (state->point)
+    snprintf(point, sizeof point, " at point %lld", (long long)state->point);
   if (state->reached > 0)
-    snprintf(rule, sizeof rule, ", the rule's interval \xc2\xb1 %.2g%s (asked %.2g%s)",
-             (state->of_mean ? 100 : 1) * state->reached, percent, (state->of_mean ? 100 : 1) * state->asked, percent);
+    snprintf(rule, sizeof rule, ", the rule's interval%s \xc2\xb1 %.2g%s (asked %.2g%s)", point,
+             (state->of_mean ? 100 : 1) * state->reached, unit, (state->of_mean ? 100 : 1) * state->asked, unit);
   snprintf(buffer, size, "%lld of %s%lld runs%s%s, %d running%s%s%s%s", (long long)state->done,
            state->total_is_minimum ? "at least " : "", (long long)state->total, state->part ? " of this round" : "",
            failed, (int)state->running, rate, time, mean, rule);

@@ -256,6 +256,13 @@ expect 0 "$clast" status wide.db
 prints "rule_unmet"
 expect 0 "$clast" status wide.db --json
 prints '"rule_unmet": 4'
+# A width has its unit: the runs are there, and the rule asks for another result.
+sed 's/until: {.*}, max/until: {quantity: last_break, half_width: 1 ns}, max/; s/^quantity: .*/quantity: last_break/' wide.yaml >unit.yaml
+expect 0 "$clast" plan unit.yaml --no-trial --store unit.db
+tr -s "\n " " " <out | grep -qF "(last_break to ±1e-09 s; at least" || fail "a width without a unit"
+expect 0 "$clast" run unit.yaml --quiet
+says "before seeds.until was met (last_break to ± 1e-09 s)"
+tr '\n' ' ' <err | grep -Eq 'its interval is ± [0-9.e-]+ s\. Raise' || fail "an interval without a unit: $(cat err)"
 # An interval of a table can be narrow where the rule still wants more runs.
 half=$(number wide.db 'select 1.2 * max(ci_half) from (select 2.0010 * sqrt((avg(x * x) - avg(x) * avg(x)) / 59) ci_half from (select point_id, largest_fraction x from run where counts) group by point_id)')
 sed "s/half_width: 0.0001/half_width: $half/" wide.yaml >narrow.yaml
@@ -318,4 +325,4 @@ expect 64 "$clast" query tiny.db "select :x"
 says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 92
+done_after 94

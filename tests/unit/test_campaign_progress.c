@@ -37,10 +37,13 @@ static void a_rule_tells_how_narrow_its_interval_is(void **state) {
   struct progress *progress = progress_create(out, PROGRESS_BAR, false, 200);
   struct progress_state now = of(10);
   now.reached = 0.0584, now.asked = 0.05, now.of_mean = true;
-  progress_update(progress, &now, 0, true);
+  progress_update(progress, &now, 0, false);
+  now.reached = 2.6e5, now.asked = 2e5, now.of_mean = false, now.unit = " Pa", now.point = 2;
+  progress_update(progress, &now, 100, true);
   progress_free(progress);
   fclose(out);
   assert_non_null(strstr(text, ", the rule's interval ± 5.8 % (asked 5 %)"));
+  assert_non_null(strstr(text, ", the rule's interval at point 2 ± 2.6e+05 Pa (asked 2e+05 Pa)"));
 }
 
 static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
