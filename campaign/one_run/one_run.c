@@ -243,7 +243,7 @@ static status compute(const struct scene *scene, const struct one_run_options *o
     code = run_simulate(&request, look, &watch, BLOCK, result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
-  if (code == STATUS_OK && !options->quiet)
+  if (code == STATUS_OK)
     tell_missing(&watch.snapshots, result->outcome.time);
   if (code == STATUS_OK && watch.snapshots.count)
     tell_older(&watch.snapshots);
