@@ -145,7 +145,8 @@ static void value_cells(const struct fit *fit, size_t k, struct table *table) {
               (const double[]){datum->value, datum->error, seeds_of(fit, k), fit->data[k].resolution * slope});
 }
 
-static status print_data(const struct fit *fit, enum table_format format, struct error *error) {
+/* *below: does the table show this column? */
+static status print_data(const struct fit *fit, enum table_format format, bool *below, struct error *error) {
   TABLE table = table_new(format, stdout);
   char label[LABEL];
   table_columns(table, (const char *const[]){"measured", "value", "error", "sd_seeds", "sd_resolution", "q05", "median",
@@ -160,7 +161,9 @@ static status print_data(const struct fit *fit, enum table_format format, struct
     quantile_cells(table, quantile, &fit->doubts[k]);
     table_real(table, share_below(fit, k, fit->data[k].value));
   }
-  return table_end(table, error);
+  TRY(table_end(table, error));
+  *below = !table_hides(table, "below");
+  return STATUS_OK;
 }
 
 /* ---- for programs ---- */
@@ -310,9 +313,12 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
 /* What the data determine of several inputs together, though not of each. */
 static void tell_together(const struct fit *fit, size_t direction, FILE *out) {
   char names[PARAGRAPH], ends[PARAGRAPH];
+  bool ridge = false; /* along which each of them is known less */
+  for (size_t i = fit->found.determined; i < fit->inputs; i++)
+    ridge |= count_mixed(fit, i) > 1;
   if (count_mixed(fit, direction) > 1)
-    words_print(out, "", "TOGETHER: the data determine %s together, to one standard deviation on either side: %s.",
-                list_mixed(fit, direction, names), list_ends(fit, direction, ends));
+    words_print(out, "", "TOGETHER: the data determine %s together, to one standard deviation on either side%s: %s.",
+                list_mixed(fit, direction, names), ridge ? " of the ridge below" : "", list_ends(fit, direction, ends));
 }
 
 /* The answer: each input with its interval, and what the data determine; or that no inputs give what was measured. */
@@ -501,16 +507,16 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
   }
 }
 
-static void tell(const struct fit *fit, FILE *out) {
+static void tell(const struct fit *fit, bool below, FILE *out) {
   tell_errors(fit, out);
   tell_shared_seeds(fit, out);
   tell_doubts(fit, out);
   words_print(out, "",
               "Surfaces through %zu points of %zu seeds in %zu rounds; posterior %s. share of prior: width of the 90 "
               "%% interval over "
-              "that of the prior. below: share of predicted experiments below the value. Source of the data: %.200s",
+              "that of the prior. %sSource of the data: %.200s",
               fit->points, fit->replicates, fit->rounds, fit->posterior.sampled ? "sampled" : "on a grid",
-              fit->observed->source);
+              below ? "below: share of predicted experiments below the value. " : "", fit->observed->source);
 }
 
 /* ---- the whole report ---- */
@@ -522,9 +528,10 @@ status fit_print(const struct fit *fit, enum table_format format, struct error *
   putchar('\n');
   TRY(print_inputs(fit, format, error));
   putchar('\n');
-  TRY(print_data(fit, format, error));
+  bool below = false;
+  TRY(print_data(fit, format, &below, error));
   putchar('\n');
-  tell(fit, stdout);
+  tell(fit, below, stdout);
   uncertainty_doubts(&fit->all_doubts, stderr);
   return STATUS_OK;
 }

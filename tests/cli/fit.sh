@@ -77,6 +77,10 @@ sed -e 's/  - measured:/  - specimens: 20\n    measured:/' -e 's/value: [^,]*/va
 expect 0 "$clast" fit twenty.yaml disc.yaml --rounds 4 -j 2 --store twenty.db
 prints "RIDGE: these data cannot tell threshold.strain and threshold.angle apart"
 prints "TOGETHER: the data determine threshold.strain and threshold.angle together"
+tr '\n' ' ' <out | grep -qF "on either side of the ridge below: threshold.strain" || fail "the ends across a ridge, as if of each input"
+# A column that is left out of a narrow table has no explanation.
+expect 0 env COLUMNS=60 "$clast" fit twenty.yaml disc.yaml --rounds 4 -j 2 --store twenty.db
+grep -q "not shown.*below" err && ! grep -q "below: share of" out || fail "a column that is not there is explained"
 # Of these discs at most one in sixty stays whole, so the mean of twenty cannot be 0.99. The report does not tell in one
 # line what the data determine and deny it in the next.
 sed 's/value: [^,]*/value: 0.99/' twenty.yaml >whole.yaml
@@ -276,4 +280,4 @@ assert a['q05'] < 0.5 < a['q95'], a
 assert 0.045 < y['sd_seeds'] < 0.072, y  # 60 pairs tell it within 9 %
 PY
 ok "the scatter of seeds that act alike"
-done_after 44
+done_after 45
