@@ -97,12 +97,14 @@ static double over(double value, double mass) {
 
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments,
                        const struct outcome_small *small) {
-  double mass = 0, square = 0, dust = 0;
+  double mass = 0, square = 0, dust = 0, rest = 0, rest_square = 0; /* rest: without the largest */
   outcome->fragment_count = (int64_t)count;
   outcome->single_count = 0;
   for (size_t k = 0; k < count; k++) {
     mass += fragments[k].mass;
     square += fragments[k].mass * fragments[k].mass;
+    rest += k > 0 ? fragments[k].mass : 0;
+    rest_square += k > 0 ? fragments[k].mass * fragments[k].mass : 0;
     outcome->single_count += fragments[k].count == 1;
     const bool is_dust = isnan(small->dust) ? fragments[k].count == 1 : fragments[k].mass < small->dust;
     dust += is_dust ? fragments[k].mass : 0;
@@ -114,5 +116,5 @@ void outcome_fragments(struct outcome *outcome, size_t count, const struct fragm
   outcome->largest_fraction = over(largest, mass);
   outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;
   outcome->mean_fragment_mass = over(square, mass);
-  outcome->mean_fragment_mass_rest = count > 1 ? over(fmax(square - largest * largest, 0), mass - largest) : 0;
+  outcome->mean_fragment_mass_rest = over(rest_square, rest);
 }

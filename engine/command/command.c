@@ -342,7 +342,7 @@ const struct engine_kind command_engine = {
     .dimensions = 0,
     .doc = "Runs a program that the scene names: its section `command` tells inputs, files, results and limits "
            "(engine/command/README.md). Needs --allow-commands.",
-    .results_version = 2,
+    .results_version = 3,
     .inputs = &definition_base,
     .results = &no_results,
     .of_scene = of_scene,

@@ -109,6 +109,11 @@ static void dumbbell(void **state) {
   near(outcome.largest_fraction, 4 / 4.5);
   near(outcome.mean_fragment_mass, 16.25 / 4.5);
   near(outcome.mean_fragment_mass_rest, 0.5);
+  const struct fragment chips[] = {{.mass = 1, .count = 9}, {.mass = 3e-9, .count = 1}, {.mass = 1e-9, .count = 1}};
+  outcome_fragments(&heavy, 3, chips, &(struct outcome_small){.dust = NAN, .complete = 1}); /* a body and two chips */
+  near(heavy.mean_fragment_mass_rest * 1e9, 2.5);
+  outcome_fragments(&heavy, 1, chips, &(struct outcome_small){.dust = NAN, .complete = 1});
+  assert_true(heavy.mean_fragment_mass_rest == 0);
   free(f);
   assert_int_equal(fragments_find(false, 0, NULL, 0, NULL, NULL, &f, &count, NULL), STATUS_OK);
   assert_null(f);
