@@ -596,12 +596,20 @@ static void write_answer(const struct from_points *p) {
            p->needed);
     return;
   }
+  char moving[1024] = "";
+  if (list_inputs(p, MOVING, moving, sizeof moving))
+    text_append(
+        text, sizeof text,
+        "%s move together in these points: their effects cannot be told apart, and together may be the largest.%s",
+        moving, is_told(p, first) ? " Of the other inputs: " : "");
   if (is_told(p, first)) {
     char others[1024] = "";
     const bool certain = share->low > 0, alone = certain && p->index[first].last_rank == 1;
     if (!alone)
       text_append(text, sizeof text, "%s: ",
-                  certain ? "Which input matters most is not sure" : "No input can be told from one that does nothing");
+                  certain   ? *moving ? "which one matters most is not sure" : "Which input matters most is not sure"
+                  : *moving ? "none can be told from one that does nothing"
+                            : "No input can be told from one that does nothing");
     append_input(p, first, text, sizeof text);
     text_append(text, sizeof text, "%s explains %.0f %% (%.0f to %.0f %%) of the variance of %s %s",
                 alone ? " matters most: alone it" : " alone", 100 * fmax(share->estimate, 0), 100 * share->low,
@@ -616,15 +624,12 @@ static void write_answer(const struct from_points *p) {
       text_append(text, sizeof text, "; %s cannot be told from 0", others);
     text_append(text, sizeof text, ".");
   }
-  for (enum listed kind = ONE_VALUE; kind <= MOVING; kind++) {
-    char others[1024] = "";
-    const size_t count = list_inputs(p, kind, others, sizeof others);
-    if (count)
-      text_append(text, sizeof text, "%s%s %s", *text ? " " : "", others,
-                  kind == MOVING ? "move together in these points: their effects cannot be told apart."
-                  : count > 1    ? "have one value each: nothing is known of them."
-                                 : "has one value: nothing is known of it.");
-  }
+  char fixed[1024] = "";
+  const size_t count = list_inputs(p, ONE_VALUE, fixed, sizeof fixed);
+  if (count)
+    text_append(text, sizeof text, "%s%s %s", *text ? " " : "", fixed,
+                count > 1 ? "have one value each: nothing is known of them."
+                          : "has one value: nothing is known of it.");
   text_wrap(text, 0, 0, COLUMNS, stdout);
 }
 

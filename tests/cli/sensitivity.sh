@@ -173,6 +173,37 @@ expect 0 "$toy" stats alike.db -Q largest_fraction
 ! grep -q "share seeds" err || fail "the interval of a mean has the seeds' part"
 ok "seeds of points that are alike"
 
+# Two inputs that move together hide the effect of each other; a third one, told alone, is not the answer.
+cat >line.yaml <<'YAML'
+engine: command
+name: line
+command:
+  program: awk
+  version: "1"
+  arguments: ['BEGIN { printf "{\"r\": %.17g}\n", 3 * ARGV[1] + ARGV[2] % 1000 * 1e-5 }', "{{x}}", "{{small_seed}}"]
+  inputs:
+    x: {default: 0, least: -2, most: 2, doc: x}
+    y: {default: 0, least: -2, most: 2, doc: y}
+    z: {default: 0, least: -2, most: 2, doc: z}
+  results:
+    r: {doc: r}
+YAML
+python - <<'PY'
+import random
+random.seed(3)
+with open("pairs.csv", "w") as f:
+    print("x [1],y [1],z [1]", file=f)
+    for i in range(100):
+        x = -1 + 2 * (i + random.random()) / 100
+        print(x, x + 0.3 * random.uniform(-1, 1), random.uniform(-1, 1), sep=",", file=f)
+PY
+printf '%s\n' 'name: pairs' 'scene: line.yaml' 'design: {file: pairs.csv}' 'seeds: 2' 'quantity: r' >pairs.yaml
+expect 0 "$clast" run pairs.yaml --allow-commands --in-process -j 1 --quiet
+expect 0 "$clast" sensitivity pairs.db -Q r
+prints "y and x move together in these points: their effects cannot be told apart, and together may be the"
+tr "\n" " " <out | grep -q "Of the other inputs: none can be told from one that does nothing: z alone" || fail "told without its pair"
+ok "inputs that move together"
+
 expect 64 "$clast" sensitivity ask.db sweep.yaml
 says "are no design for sensitivity indices"
 expect 64 "$clast" sensitivity sweep.yaml new.yaml --design grid
@@ -181,4 +212,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design morris
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 50
+done_after 53
