@@ -45,7 +45,8 @@ static const struct field rows[] = {
                 "2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only."),
     ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 1,
         .label = "mass share of the largest fragment M₁/M",
-        .doc = "Mass of the largest fragment over the total mass, M_1/M."),
+        .doc = "Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target "
+               "without the projectile (sph)."),
     ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 2,
         .label = "mass share of the second largest fragment M₂/M",
         .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
