@@ -43,12 +43,12 @@ struct kept {
   char number[64], others[LINE]; /* "granite 1.31 MPa, ..." */
 };
 
-/* Points with the inputs of an earlier one, which are one point with it. */
+/* Points with the inputs of an earlier one, which are one point with it, though the document gives another value. */
 struct twins {
   uint8_t (*identity)[16];   /* of each new point; owned */
   struct field_value *value; /* its values of the axes; owned */
-  size_t seen, count;
-  char pairs[LINE]; /* "target.material.name ./b.yaml as ./a.yaml, ..." */
+  size_t seen, again, count; /* new points; points that are one with those; of them with other values */
+  char pairs[LINE];          /* "target.material.name ./b.yaml as ./a.yaml, ..." */
 };
 
 struct doubts {
@@ -163,20 +163,24 @@ void campaign_warn_scene(const struct scene *scene, const char *before, FILE *ou
   print_kept(&doubts, before, out);
 }
 
-/* Adds what tells two equal points apart in the document, such as the names of two files with the same values. */
+/* Adds what tells two equal points apart in the document, such as the names of two files with the same values. A point
+ * that is given twice, as by a design for sensitivities, is no pair. */
 static void add_pair(struct twins *twins, const struct campaign *campaign, const struct field_value *value,
                      const struct field_value *earlier) {
+  bool differ = false;
   for (size_t a = 0; a < campaign->axis_count; a++) {
     const struct field *row = campaign->axes[a].row;
     char own[FIELD_TEXT_SIZE], other[FIELD_TEXT_SIZE], pair[3 * FIELD_TEXT_SIZE];
     if (field_same_value(row, &value[a], &earlier[a]))
       continue;
+    differ = true;
     field_show(row, &value[a], own, sizeof own);
     field_show(row, &earlier[a], other, sizeof other);
     snprintf(pair, sizeof pair, "%s %s as %s", row->path, own, other);
     if (!has_other(twins->pairs, pair) && strlen(twins->pairs) + strlen(pair) < LINE - 8)
       text_append(twins->pairs, LINE, "%s%s", *twins->pairs ? ", " : "", pair);
   }
+  twins->count += differ;
 }
 
 /* Has no earlier point the inputs of this one? */
@@ -186,7 +190,7 @@ static bool is_new(struct twins *twins, const struct campaign_walk *walk, const 
   scene_identity(scene, 0, own);
   for (size_t i = 0; i < twins->seen; i++)
     if (memcmp(twins->identity[i], own, sizeof twins->identity[i]) == 0) {
-      twins->count++;
+      twins->again++;
       add_pair(twins, walk->campaign, walk->values, twins->value + i * axes);
       return false;
     }
@@ -198,8 +202,8 @@ static void print_twins(const struct twins *twins, const char *before, FILE *out
   char text[LINE + 200];
   if (twins->count == 0)
     return;
-  snprintf(text, sizeof text, "%zu of %zu points have the values of an earlier one, and are one point with it%s%s",
-           twins->count, twins->seen + twins->count, *twins->pairs ? ": " : "", twins->pairs);
+  snprintf(text, sizeof text, "%zu of %zu points have the values of an earlier one, and are one point with it: %s",
+           twins->count, twins->seen + twins->again, twins->pairs);
   print_line(text, before, out);
 }
 
