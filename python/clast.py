@@ -144,7 +144,7 @@ class Store:
         return self.query("SELECT * FROM spectra WHERE point_id = ?", (int(point),))
 
     def estimates(self, point=None, studies=False):
-        """A row for each exponent of a point, over all of its runs."""
+        """A row for each exponent of a point, over all of its runs; untold: why tables show no beta."""
         where = "SELECT * FROM estimates WHERE run_id IS NULL"
         if point is None:
             return self.query(f"{where} AND {self._without(studies)}")

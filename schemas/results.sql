@@ -102,7 +102,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
   dust_fraction REAL, -- [1] Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).
   complete_mass REAL, -- [kg] The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 of the heaviest) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
-  largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M.
+  largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).
   second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
   mean_fragment_mass REAL, -- [kg] Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).
   mean_fragment_mass_rest REAL, -- [kg] The same without the largest fragment.
@@ -173,7 +173,7 @@ CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they ca
   upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife), and as of one run where this gives no interval.
   hw95 REAL, -- [1] Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off for one run. It does not hold the error of the resolution.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; method masses only.
@@ -192,7 +192,7 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife), and as of one run where this gives no interval.
   hw95 REAL, -- [1] Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off for one run. It does not hold the error of the resolution.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; method masses only.
@@ -659,7 +659,12 @@ FROM point p JOIN point_total t ON t.point_id = p.point_id
 CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)
 SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,
   (EXISTS (SELECT 1 FROM campaign WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND p.point_id NOT IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE NOT ifnull(document LIKE '# Written by clast %', 0)) AND (p.point_id IN (SELECT point_id FROM campaign_point) OR NOT EXISTS (SELECT 1 FROM run AS x WHERE x.point_id = p.point_id))) AS study,
-  "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", e.results_version
+  "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", 
+  CASE WHEN e.run_id IS NOT NULL THEN NULL WHEN e.n < 5 THEN 'fewer than 5 fragments'
+    WHEN e.beta IS NULL THEN iif(e.method = 'least_squares', 'a bin without a fragment', 'fewer than 5 different masses')
+    WHEN e.hw95 IS NULL THEN iif(e.standard_error < 1, NULL, 'no interval and a standard error of 1 or more')
+    WHEN e.hw95 >= 2 THEN 'an interval of ± 2 or wider' END AS untold,
+  e.results_version
 FROM (
   SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", r.results_version
   FROM estimate JOIN run r USING (run_id)
@@ -944,7 +949,7 @@ INSERT INTO column_doc VALUES ('estimate', 'ordinal', NULL, 'number among the es
 
 INSERT INTO column_doc VALUES ('estimate', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 1);
+INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife), and as of one run where this gives no interval.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.', 1);
 
@@ -986,9 +991,11 @@ INSERT INTO column_doc VALUES ('estimates', 'scene', NULL, 'name of the scene th
 
 INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 0);
+INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife), and as of one run where this gives no interval.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'untold', NULL, 'of a point: why tables show no beta, whose whole number is not known; NULL: they show it', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
@@ -1044,7 +1051,7 @@ INSERT INTO column_doc VALUES ('point_estimate', 'point_id', NULL, 'the point', 
 
 INSERT INTO column_doc VALUES ('point_estimate', 'results_version', NULL, 'version of the engine''s results it was made from', 0);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife).', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds. Of a point: from leaving out one of its runs after another (jackknife), and as of one run where this gives no interval.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.', 1);
 
@@ -1136,23 +1143,23 @@ INSERT INTO column_doc VALUES ('points', 'fragment_count_se', '1', 'standard err
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_weak', '1', '1: too few runs of this kind for the interval of this share: Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_high95', '1', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_low95', '1', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean over runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean over runs: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard deviation between runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard deviation between runs: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard error of the mean: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard error of the mean: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_high95', 'kg', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
@@ -1460,7 +1467,7 @@ INSERT INTO column_doc VALUES ('run', 'identity', NULL, '128-bit hash of engine,
 
 INSERT INTO column_doc VALUES ('run', 'kinetic_energy_share', '1', 'Translation energy of the fragments over the energy put in.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 1);
+INSERT INTO column_doc VALUES ('run', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 1);
 
 INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 1);
 
@@ -1630,7 +1637,7 @@ INSERT INTO column_doc VALUES ('runs', 'largest_bare_fraction', '1', 'M_1/M of t
 
 INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M with the damaged layer and without the static strength.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_loss', '1', 'Loss of M_1/M of the largest fragment in the second half of the run''s time; 0 for a final run. Expect about as much in the next doubling of the time.', 0);
 

@@ -134,7 +134,8 @@ void point_estimate_rows(const struct point_estimate fits[POINT_ESTIMATES], stru
   for (int i = 0; i < POINT_ESTIMATES; i++) {
     const struct point_estimate *made = &fits[i];
     rows[i] = (struct estimate){.window = (int)made->window, .fit = made->exponent.fit};
-    rows[i].fit.standard_error = made->exponent.interval.standard_error;
+    if (isfinite(made->exponent.interval.half_width))
+      rows[i].fit.standard_error = made->exponent.interval.standard_error;
     rows[i].half_width = made->exponent.interval.half_width;
     rows[i].headline = rows[i].window == ESTIMATES_HEADLINE_WINDOW && rows[i].fit.method == ESTIMATES_HEADLINE_METHOD;
   }

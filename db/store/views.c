@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/statistics.h"
 #include "engine/engine.h"
 #include "engine/outcome.h"
 #include "schemas/memory.h"
@@ -424,6 +425,25 @@ static void write_estimate_columns(struct view *view) {
   write_rows(view, "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'");
 }
 
+/* Why tables show no exponent of this point, as pooled_exponent_untold() says. */
+static const char *untold(int64_t n, double beta, double half_width, enum exponent_method method) {
+  return pooled_exponent_untold(
+      &(struct pooled_exponent){.fit = {.method = method, .n = n, .beta = beta, .standard_error = NAN},
+                                .interval = {.half_width = half_width}});
+}
+
+static void write_untold(FILE *out) {
+  const enum exponent_method bins = EXPONENT_LEAST_SQUARES, masses = EXPONENT_MASSES;
+  const int n = EXPONENT_LEAST_FRAGMENTS;
+  fprintf(out,
+          "  CASE WHEN e.run_id IS NOT NULL THEN NULL WHEN e.n < %d THEN '%s'\n"
+          "    WHEN e.beta IS NULL THEN iif(e.method = '%s', '%s', '%s')\n"
+          "    WHEN e.hw95 IS NULL THEN iif(e.standard_error < 1, NULL, '%s')\n"
+          "    WHEN e.hw95 >= 2 THEN '%s' END AS untold,\n",
+          n, untold(0, NAN, NAN, masses), exponent_method_names[bins], untold(n, NAN, NAN, bins),
+          untold(n, NAN, NAN, masses), untold(n, 2, NAN, masses), untold(n, 2, 2, masses));
+}
+
 static void write_estimates(struct view *view) {
   fputs("estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
         "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n",
@@ -431,7 +451,9 @@ static void write_estimates(struct view *view) {
   write_axes(view);
   fputs("  ", view->out);
   write_estimate_columns(view);
-  fputs("e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ", view->out);
+  fputs("\n", view->out);
+  write_untold(view->out);
+  fputs("  e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ", view->out);
   write_estimate_columns(view);
   fputs("r.results_version\n  FROM estimate JOIN run r USING (run_id)\n  UNION ALL\n"
         "  SELECT point_id, NULL, NULL, NULL, NULL, ",

@@ -24,6 +24,7 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),
   ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student); NULL: one run, or all are equal to 14 digits'),
   ('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its integral over mass is 1'),
+  ('estimates', 'untold', NULL, 'of a point: why tables show no beta, whose whole number is not known; NULL: they show it'),
   ('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels'),
   ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),
   ('resolution', 'quantity', NULL, 'the result, as a column of the view runs; beta or beta_METHOD_WINDOW: an exponent of all runs of a point'),

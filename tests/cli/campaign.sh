@@ -35,12 +35,12 @@ same "$(number tiny.db "select count(distinct point_id) $pooled")" 4 "points wit
 python - <<'PY'
 import json, sqlite3
 rows = json.load(open('out'))
-stored = {(p, w): (b, n) for p, w, b, n in sqlite3.connect('file:tiny.db?mode=ro', uri=True).execute(
-    "select point_id, window, beta, n from estimates where run_id is null and method = 'masses'")}
+stored = {(p, w): (b, n, u) for p, w, b, n, u in sqlite3.connect('file:tiny.db?mode=ro', uri=True).execute(
+    "select point_id, window, beta, n, untold from estimates where run_id is null and method = 'masses'")}
 assert len(stored) == 12
 for r in rows:
-    b, n = stored[r['point_id'], r['window']]
-    assert n == r['fragments'] and (b is None) == (r['beta_masses'] is None), (r, b, n)
+    b, n, u = stored[r['point_id'], r['window']]
+    assert n == r['fragments'] and (u or '') == (r['beta_masses_untold'] or '') and (b is None) == (r['beta_masses'] is None), (r, b, n)
     assert b is None or abs(b - r['beta_masses']) < 0.0051, (r, b)  # printed to two decimals
 PY
 ok "the pooled estimates in the store are those printed"
