@@ -175,7 +175,7 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
 static status print_bins(const struct find *find, bool quiet, struct error *error) {
   struct bin bins[2 * BINS + 2];
   size_t count;
-  bool any_weak = false, holds = false;
+  bool any_weak = false, all_one = false, holds = false;
   const struct sample_range range = sample_range(find->quantity.row);
   char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 8], above[128];
   TRY(make_bins(find, bins, &count, error));
@@ -189,7 +189,10 @@ static status print_bins(const struct find *find, bool quiet, struct error *erro
     table_text(table, find_show_within(find, bins[i].low, 0, 0.1, text));
     table_text(table, find_show_within(find, bins[i].high, 0, 0.1, text));
     table_integer(table, (int64_t)bins[i].n);
-    uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, &range, mean);
+    if (uncertainty_all_one(bins[i].mean.mean, bins[i].mean.half_width, bins[i].mean.low, &range, mean))
+      all_one = true;
+    else
+      uncertainty_cell(bins[i].mean.mean, bins[i].mean.half_width, &range, mean);
     any_weak |= bins[i].mean.weak;
     holds |= isnan(find->share) && bins[i].mean.low < find->level && find->level < bins[i].mean.high;
     if (bins[i].mean.weak)
@@ -204,8 +207,8 @@ static status print_bins(const struct find *find, bool quiet, struct error *erro
     return STATUS_OK;
   words_print(stderr, "",
               "clast: runs of neighbouring values are one row, from its least to its largest value, with the mean over "
-              "them and its 95 %% interval%s",
-              any_weak ? "; ~: weak, too few runs" : "");
+              "them and its 95 %% interval%s%s",
+              any_weak ? "; ~: weak, too few runs" : "", all_one ? "; " UNCERTAINTY_ALL_ONE : "");
   if (holds && is_none(find))
     words_print(stderr, "",
                 "clast: the interval of one row holds the level; it comes from the runs of that row alone. The answer "

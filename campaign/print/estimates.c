@@ -111,11 +111,11 @@ static void mean_cell(struct printing *printing, const struct ask_points_row *ro
     table_missing(table);
     return;
   }
-  if (row->mean >= 1 && isnan(row->half_width) && isfinite(row->low))
-    snprintf(text, sizeof text, "%.3f \xe2\x89\xa5 %.3f", row->mean, row->low);
+  const struct sample_range share = {0, 1, true};
+  if (uncertainty_all_one(row->mean, row->half_width, row->low, &share, text))
+    seen->all_one = true;
   else
-    uncertainty_cell(row->mean, row->half_width, &(struct sample_range){0, 1, true}, text);
-  seen->all_one |= strstr(text, "\xe2\x89\xa5") != NULL;
+    uncertainty_cell(row->mean, row->half_width, &share, text);
   seen->ends |= strchr(text, '(') != NULL;
   seen->interval |= strstr(text, "\xc2\xb1") != NULL;
   seen->single |= row->n == 1;
@@ -218,7 +218,7 @@ static void print_legend(const struct printing *printing, FILE *out) {
   if (seen->weak)
     text_append(text, sizeof text, "; ~: weak, too few runs");
   if (seen->all_one)
-    text_append(text, sizeof text, "; 1.000 \xe2\x89\xa5 a: all runs are 1, and the mean is at least a");
+    text_append(text, sizeof text, "; %s", UNCERTAINTY_ALL_ONE);
   if (seen->single)
     text_append(text, sizeof text, "; one run has no interval");
   text_append(text, sizeof text, ". \xc2\xb1res: how far finer settings may move the number before it%s",

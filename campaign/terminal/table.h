@@ -103,6 +103,11 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
 
 /* The same with the interval, "0.11 (0 to 0.27)", where the half width passes an end of the range. */
 void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]);
+/* Writes "1.000 ≥ 0.905" if the value is that of equal runs at the upper end of a share; low: what they bound. False:
+ * it is another value. */
+#define UNCERTAINTY_ALL_ONE "1.000 \xe2\x89\xa5 a: all runs are 1, and the mean is at least a"
+bool uncertainty_all_one(double value, double half_width, double low, const struct sample_range *range,
+                         char text[UNCERTAINTY_TEXT]);
 
 /* Says on stderr that so many runs of a store are excluded; nothing for 0. */
 void uncertainty_excluded(int64_t count, const char *store);

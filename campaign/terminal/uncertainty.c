@@ -91,6 +91,14 @@ void uncertainty_cell(double value, double half_width, const struct sample_range
   snprintf(text, UNCERTAINTY_TEXT, "%s (%s to %s)", parts[0], parts[1], parts[2]);
 }
 
+bool uncertainty_all_one(double value, double half_width, double low, const struct sample_range *range,
+                         char text[UNCERTAINTY_TEXT]) {
+  if (range->most != 1 || !(value >= 1) || !isnan(half_width) || !isfinite(low))
+    return false;
+  snprintf(text, UNCERTAINTY_TEXT, "%.3f \xe2\x89\xa5 %.3f", value, low);
+  return true;
+}
+
 void uncertainty_excluded(int64_t count, const char *store) {
   char word[TEXT_WORD];
   if (count > 0)

@@ -134,6 +134,10 @@ prints " runs), and its answer: the same command without --plan prints it."
 expect 0 "$clast" find disc.yaml --level 0.5 --from 5% --to 6% --quiet
 grep -q 'one row\|resolution\|other runs\|level;' err && fail "remarks behind --quiet"
 says "marked (!)"
+# Equal runs bound the mean from below, as in the other tables.
+sed 's/^vary.*/vary: {threshold.strain: [20 %, 30 %]}/; s/900 J/1 J/; s/4 ms/1 ms/; s/disc.db/whole.db/' disc.yaml >whole.yaml
+expect 0 "$clast" find whole.yaml --level 0.5
+prints "1.000 ≥ 0.473"; says "1.000 ≥ a: all runs are 1, and the mean is at least a"
 # Of a whole number, the interval is one step. Mass grows with the columns, without noise.
 cat >block.yaml <<'YAML'
 name: block
@@ -184,4 +188,4 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 52
+done_after 53
