@@ -61,7 +61,7 @@ static bool is_of_sql(int code) {
 static const char between_statements[] = " \t\n\v\f\r;";
 
 /* SQLite says that there is no column X: names the columns of the view runs that end in it ("strain" or
- * "threshold.strain" for threshold_strain), as tables and --by call them. */
+ * "threshold.strain" for threshold_strain, "material" for target_material_name), as tables and --by call them. */
 static void suggest_columns(sqlite3 *db, const char *message, char *names, size_t size) {
   static const char no_column[] = "no such column: ";
   char typed[128], found[400] = "";
@@ -72,8 +72,11 @@ static void suggest_columns(sqlite3 *db, const char *message, char *names, size_
   snprintf(typed, sizeof typed, "_%.120s", message + strlen(no_column));
   for (char *dot = typed; (dot = strchr(dot, '.'));)
     *dot = '_';
-  if (sql_prepare(db, "SELECT name FROM pragma_table_info('runs') WHERE substr('_' || name, -length(?1)) = ?1 LIMIT 4",
-                  &columns, "looking for a column", &ignored))
+  if (sql_prepare(
+          db,
+          "SELECT name FROM pragma_table_info('runs') WHERE ?1 IN (substr('_' || name, -length(?1)), substr('_' || "
+          "replace(name || '$', '_name$', ''), -length(?1))) LIMIT 4",
+          &columns, "looking for a column", &ignored))
     return;
   sqlite3_bind_text(columns, 1, typed, -1, SQLITE_STATIC);
   while (sqlite3_step(columns) == SQLITE_ROW)

@@ -91,11 +91,23 @@ static const char *without_engine(const char *column) {
   return column;
 }
 
+/* Does the name of the result on axes begin with the word, as "strength: largest mean stress"? */
+static bool is_labelled(const char *column, const char *word) {
+  const size_t length = strlen(word);
+  for (size_t i = 0; i < engine_count(); i++) {
+    const struct field *row = field_of_column(engine_at(i)->results, without_engine(column));
+    if (row && row->label && strncmp(row->label, word, length) == 0 && row->label[length] == ':')
+      return true;
+  }
+  return false;
+}
+
 /* Looks for the name as written, as a column name, as a column name without its engine's prefix or its last word
  * "name", and as a section of a path. */
 static status look_for(struct store *store, const char *columns_sql, const char *name, struct choice *choice,
                        struct error *error) {
   char column[NAME], named[NAME]; /* named: "material" of "target_material_name" */
+  char labelled[NAME] = "";
   field_column_name(name, column, sizeof column);
   snprintf(named, sizeof named, "%.*s_name", NAME - 6, column);
   const char *const forms[] = {name, column, without_engine(column), named, name};
@@ -109,10 +121,16 @@ static status look_for(struct store *store, const char *columns_sql, const char 
     choice->known[0] = choice->alike[0] = '\0';
     choice->similar = choice->alike_words = 0;
     ANSWER answer = answer_to(store, error, "%s", columns_sql);
-    while (answer_next(&answer))
-      consider(choice, answer_text(&answer, 0), answer_count(&answer) > 1 ? answer_text(&answer, 1) : NULL);
+    while (answer_next(&answer)) {
+      const char *known = answer_text(&answer, 0);
+      consider(choice, known, answer_count(&answer) > 1 ? answer_text(&answer, 1) : NULL);
+      if (is_labelled(known, name))
+        snprintf(labelled, sizeof labelled, "%s", known);
+    }
     TRY(answer_end(&answer));
   }
+  if (*labelled)
+    snprintf(choice->near, sizeof choice->near, "%s", labelled);
   return STATUS_OK;
 }
 

@@ -115,6 +115,10 @@ prints "weak sandstone - own.yaml,"; prints "own.yaml,"
 expect 0 "$clast" replay rocks.db 2
 expect 0 "$clast" run rocks.yaml --quiet
 same "$(sqlite3 rocks.db "select count(*) from run")" 2 "runs of two rocks"
+expect 64 "$clast" query rocks.db "select target_material from points"
+says "The view runs has target_material_name"
+expect 64 "$clast" stats rocks.db -Q strength
+says "did you mean 'peak_stress'?"
 # Bars have the order of the campaign, and a file's name only where two rocks have the same.
 sed 's/^density: .*/density: 2.3 g\/cm^3/' other/own.yaml >other/third.yaml
 sed 's/, other.own.yaml/, other\/third.yaml&/' rocks.yaml >three.yaml
@@ -201,4 +205,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 70
+done_after 72

@@ -109,7 +109,8 @@ static const struct field rows[] = {
 #define TIME_STEP_LIMIT(NAME, member, doc_) SHARE(limited.member, .doc = "Share of the steps limited by " doc_ "."),
 #include "engine/sph/modules/declarations.h"
     REAL(neighbours, "1", 0, .doc = "Mean number of neighbours within 2h at the end."),
-    REAL(peak.stress, "Pa", -HUGE_VAL, .doc = "Stretch: largest mean axial stress between the grips."),
+    REAL(peak.stress, "Pa", -HUGE_VAL, .label = "strength: largest mean stress",
+         .doc = "Stretch: largest mean axial stress between the grips."),
     REAL(peak.strain, "1", 0, .doc = "Stretch: strain (strain rate times time) at the largest stress."),
     REAL(peak.time, "s", 0, .doc = "Stretch: time of the largest stress."),
     REAL(cracks, "1", 0,
