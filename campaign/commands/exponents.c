@@ -18,11 +18,16 @@ static double with_two_digits(double number) {
   return strtod(text, NULL);
 }
 
+struct seen {
+  bool flat;           /* beta is 1 or less: numbers above a mass are no power law then */
+  char untold[UNTOLD]; /* why exponents are not told, */
+  const char *open;    /* and why one has no interval; NULL: each has */
+};
+
 /* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
- * Points without estimates have no row. *flat becomes true if beta is 1 or less: numbers above a mass are no power law
- * then. */
+ * Points without estimates have no row. */
 static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pools *pools,
-                         const struct ask_pool *pool, char *untold, bool *flat, struct error *error) {
+                         const struct ask_pool *pool, struct seen *seen, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent fit;
   struct pooled_goodness goodness;
@@ -37,18 +42,25 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
   table_reals(table, 2, (const double[]){lower, pool->data.complete_mass});
   table_integer(table, (int64_t)runs->count);
   table_integer(table, fit.fit.n);
-  pooled_exponent_tell(pooled_exponent_untold(&fit), untold, UNTOLD);
-  if (people && pooled_exponent_untold(&fit))
+  const char *untold = pooled_exponent_untold(&fit);
+  pooled_exponent_tell(untold, seen->untold, UNTOLD);
+  const bool weak = !untold && runs->count > 1 && !isfinite(fit.interval.half_width);
+  if (weak)
+    seen->open = pooled_exponent_no_interval(&fit);
+  if (people && untold)
     fit.fit.beta = NAN;
   const double any = 1; /* a density: the exponents by size do not depend on it */
-  *flat |= fit.fit.beta <= 1;
+  seen->flat |= fit.fit.beta <= 1;
   for (int form = 0; form < 4; form++) {
     const struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
     const bool none = people && form % 2 && fit.fit.beta <= 1;
     table_rests_on(table, &pool->doubts);
-    table_fixed(table, none ? (double)NAN : pooled_spectrum_exponent(&named, fit.fit.beta), 2);
+    table_fixed(table, none ? (double)NAN : pooled_spectrum_exponent(&named, fit.fit.beta),
+                people ? pooled_exponent_decimals(&fit) : 2);
     if (form == 0 || form == 3)
       table_fixed(table, none ? (double)NAN : pooled_spectrum_half_width(&named, fit.interval.half_width), 2);
+    if (people)
+      table_integer(table, weak && !none);
   }
   const double tests[] = {goodness.distance, goodness.p, rivals.cutoff_p, rivals.open_cutoff_p, rivals.lognormal_p};
   for (size_t k = 0; k < sizeof tests / sizeof tests[0]; k++) {
@@ -69,18 +81,21 @@ static status ask(struct store *store, const struct command_line *line, struct e
   table_column(table, "from", kg);
   table_column(table, OUTCOME_NAME(complete_mass), kg);
   table_rare(table);
-  table_columns(table, (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
-                                             "N(>L)_hw95", "distance", NULL});
+  table_columns(table, table_for_people(line->format)
+                           ? (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "F(m)_weak", "N(>m)",
+                                                   "N(>m)_weak", "F(L)", "F(L)_weak", "N(>L)", "N(>L)_hw95",
+                                                   "N(>L)_weak", "distance", NULL}
+                           : (const char *const[]){"runs", "fragments", "F(m)", "F(m)_hw95", "N(>m)", "F(L)", "N(>L)",
+                                                   "N(>L)_hw95", "distance", NULL});
   table_rare(table);
   table_columns(table, (const char *const[]){"p", "cutoff_p", "open_cutoff_p", NULL});
   table_column(table, "lognormal_p", NULL);
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
-  char untold[UNTOLD] = "";
-  bool flat = false;
+  struct seen seen = {.flat = false};
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), &pools, pool, untold, &flat, error));
+    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), &pools, pool, &seen, error));
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
@@ -90,9 +105,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
         stderr, "",
         "clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete "
         "mass. p below 0.1: a power law does not fit. cutoff_p below 0.05: one with an exponential cut-off fits "
-        "better; open_cutoff_p: the same with the largest fragments, where they belong to the law%s%s%s",
-        *untold ? ". -: " : "", untold,
-        flat ? ". N(>m), N(>L) -: numbers above a mass follow no power law where F(m) is at most 1" : "");
+        "better; open_cutoff_p: the same with the largest fragments, where they belong to the law%s%s%s%s%s",
+        *seen.untold ? ". -: " : "", seen.untold, seen.open ? ". ~: no interval, " : "", seen.open ? seen.open : "",
+        seen.flat ? ". N(>m), N(>L) -: numbers above a mass follow no power law where F(m) is at most 1" : "");
   }
   return STATUS_OK;
 }

@@ -153,8 +153,10 @@ expect 0 "$clast" run flat-runs.yaml $word
 expect 0 "$clast" exponents flat.db --draws 100
 says "numbers above a mass follow no power law"
 same "$(awk '$1 == 1 {print $6, $8}' out)" "- -" "exponents of a flat spectrum"
+expect 0 "$clast" run grains-runs.yaml --seeds 2 $word
 expect 0 "$clast" exponents grains.db --draws 100
 ! grep -q 'follow no power law' err || fail "an exponent of 2 is called flat"
+says "~: no interval, all runs are equal"; grep -q ' 2.01~ ' out || fail "no mark at an exponent without an interval"
 # A power law that ends at 20 kg: windows that end at the largest fragment hide it.
 scene ends 'fragments: {name: m, unit: kg}' <<'SH'
 awk 'BEGIN { for (i = 0.5; i < 2000; i++) m = m sprintf(", %.17g", 1 / (i / 2000 + 0.05)); print "{\"x\": 1, \"m\": [" substr(m, 2) ", 19, 19.2, 19.4, 19.6]}" }'
@@ -439,4 +441,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 165
+done_after 166
