@@ -24,7 +24,7 @@ static const struct option_row choice_rows[] = {
                     .doc = "Only the points of this campaign, with all their runs, also those that other campaigns "
                            "computed: its number or its name (`clast status` lists them)."),
     OPTION_ROW_TEXT("where", 'w', "SQL", struct shared_options, choice.where, NULL,
-                    .doc = "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
+                    .doc = "Only runs that meet this SQL condition on the view runs, in SI units: \"strain > 0.02\"."),
     OPTION_ROW_FLAG("studies", 0, struct shared_options, studies,
                     .doc = "Also the points that only a study or a search (converge, find, fit) has."),
 };
