@@ -188,10 +188,10 @@ static status parse_text(const struct field *row, const char *text, struct field
   return STATUS_OK;
 }
 
-/* The number of 15 digits, without the residue of a conversion. */
-static double fifteen_digits(double number) {
+/* The number of so many digits: with 15 without the residue of a conversion. */
+static double of_digits(int digits, double number) {
   char text[32];
-  snprintf(text, sizeof text, "%.15g", number);
+  snprintf(text, sizeof text, "%.*g", digits, number);
   return strtod(text, NULL);
 }
 
@@ -205,7 +205,7 @@ static status check_unit(const struct field *row, const char *text, struct error
   const int length = (int)strcspn(text, " ") < QUOTE ? (int)strcspn(text, " ") : QUOTE;
   if (strcmp(unit, "1") == 0) {
     char percent[32];
-    field_print_number(fifteen_digits(100 * strtod(text, NULL)), percent);
+    field_print_number(of_digits(15, 100 * strtod(text, NULL)), percent);
     return status_fail(error, STATUS_CONTENT, "%s: %.*s is a percentage or a fraction; write '%.*s %%' or '%s %%'",
                        row->path, length, text, length, text, percent);
   }
@@ -230,9 +230,9 @@ static status check_range_of_text(const struct field *row, const char *text, con
   struct field in_unit = *row;
   in_unit.unit = unit;
   in_unit.flags &= ~(unsigned)FIELD_PERCENT;
-  in_unit.minimum = fifteen_digits(row->minimum / written.factor);
-  in_unit.maximum = fifteen_digits(row->maximum / written.factor);
-  told.number = fifteen_digits(came->number / written.factor);
+  in_unit.minimum = of_digits(6, row->minimum / written.factor);
+  in_unit.maximum = of_digits(6, row->maximum / written.factor);
+  told.number = of_digits(15, came->number / written.factor);
   return field_set_value(&in_unit, &told, &ignored, error); /* or the message in SI, if this one can be accepted */
 }
 

@@ -371,6 +371,7 @@ static void list_row(struct table *table, const char *of, const char *path, cons
 static status explain_path_list(enum table_format format, struct error *error) {
   const struct field_table *list[TABLES_MAXIMUM];
   size_t count = tables(list);
+  const bool people = table_for_people(format);
   TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"of", "path", "unit", "default", "meaning", NULL});
   for (size_t i = 0; i < count; i++)
@@ -382,9 +383,10 @@ static status explain_path_list(enum table_format format, struct error *error) {
       struct field_value value;
       if (has_default) {
         field_default(row, &value);
-        field_print(row, &value, text, sizeof text);
+        (people ? field_show : field_print)(row, &value, text, sizeof text);
       }
-      list_row(table, list[i]->name, row->path, row->unit, text, row->doc);
+      const bool angle = people && row->unit && strcmp(row->unit, "rad") == 0;
+      list_row(table, list[i]->name, row->path, angle ? "deg" : row->unit, text, row->doc);
     }
   for (size_t i = 0; i < campaign_keys_count; i++)
     list_row(table, campaign_table.name, campaign_keys[i].name, NULL, "", campaign_keys[i].doc);

@@ -12,6 +12,17 @@
 
 /* ---- places of the bracket ---- */
 
+double find_unit(const struct find *find, const char **shown) {
+  struct unit unit;
+  const struct field *row = find->input;
+  const bool percent = row->flags & FIELD_PERCENT, angle = row->unit && strcmp(row->unit, "rad") == 0;
+  *shown = find->axis.unit;
+  if (**shown && unit_parse(*shown, &unit, NULL) == STATUS_OK)
+    return unit.factor;
+  *shown = percent ? "%" : angle ? "deg" : row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+  return percent ? 0.01 : angle ? M_PI / 180 : 1;
+}
+
 void find_value(const struct find *find, double x, struct field_value *value) {
   const double low = find->from, high = find->to;
   const double exact = find->logarithmic ? low * pow(high / low, x) : low + (high - low) * x;
@@ -20,10 +31,14 @@ void find_value(const struct find *find, double x, struct field_value *value) {
     value->integer = (int64_t)round(exact);
     return;
   }
-  char text[32];
-  const double step = pow(10, floor(log10(find->logarithmic ? exact : high - low)) - 4);
-  snprintf(text, sizeof text, "%.12g", round(exact / step) * step); /* the number that a person would write */
-  value->number = x <= 0 ? low : x >= 1 ? high : fmin(fmax(strtod(text, NULL), low), high);
+  char text[FIND_TEXT];
+  const char *unit;
+  const double scale = find_unit(find, &unit);
+  const double step = pow(10, floor(log10((find->logarithmic ? exact : high - low) / scale)) - 4);
+  snprintf(text, sizeof text, "%.12g %s", round(exact / scale / step) * step, unit); /* as a person would write it */
+  if (unit_read(text, find->input->unit, &value->number, NULL) != STATUS_OK)
+    value->number = exact;
+  value->number = x <= 0 ? low : x >= 1 ? high : fmin(fmax(value->number, low), high);
 }
 
 double find_place(const struct find *find, const struct field_value *value) {

@@ -60,6 +60,8 @@ double find_widest(const struct find *find);
 /* Value of the input at a place of the bracket, as a document can show it (to 1e-4 of the bracket's decade), and back.
  */
 void find_value(const struct find *find, double x, struct field_value *value);
+/* The unit in which places are round: the campaign's, else per cent, degrees or SI; and one of it in SI. */
+double find_unit(const struct find *find, const char **shown);
 double find_place(const struct find *find, const struct field_value *value);
 
 /* The name of the rounds of all searches along the input. */

@@ -19,18 +19,6 @@ static const char *show(const struct find *find, double x, char text[FIND_TEXT])
   return design_axis_show(&find->axis, &value, text, FIND_TEXT);
 }
 
-/* The unit of the sentence: the campaign's, else per cent, degrees or SI; and one of it in SI. */
-static double shown_unit(const struct find *find, const char **shown) {
-  struct unit unit;
-  const struct field *row = find->input;
-  const bool percent = row->flags & FIELD_PERCENT, angle = row->unit && strcmp(row->unit, "rad") == 0;
-  *shown = find->axis.unit;
-  if (**shown && unit_parse(*shown, &unit, NULL) == STATUS_OK)
-    return unit.factor;
-  *shown = percent ? "%" : angle ? "deg" : row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
-  return percent ? 0.01 : angle ? M_PI / 180 : 1;
-}
-
 const char *find_show_within(const struct find *find, double x, double low, double high, char text[FIND_TEXT]) {
   struct field_value ends[2], value;
   find_value(find, fmax(low, 0), &ends[0]);
@@ -39,7 +27,7 @@ const char *find_show_within(const struct find *find, double x, double low, doub
   const double width = fabs(ends[1].number - ends[0].number);
   if (value.kind == FIELD_REAL && width > 0) {
     const char *unit;
-    const double scale = shown_unit(find, &unit);
+    const double scale = find_unit(find, &unit);
     const double step = pow(10, floor(log10(width / scale)) - 1) * scale;
     const double places = value.number / step;
     value.number = step * (x == low ? floor(places + 1e-6) : x == high ? ceil(places - 1e-6) : round(places));
@@ -384,7 +372,7 @@ status find_print_picture(const struct find *find, const char *path, const struc
   const double at = is_share ? find->share : find->level;
   double least = at, most = at;
   const char *unit;
-  const double one_of_unit = shown_unit(find, &unit);
+  const double one_of_unit = find_unit(find, &unit);
   STORE store = NULL;
   TRY(store_open_reader(find->limits.store, &store, error));
   TRY(make_bins(find, bins, &count, error));

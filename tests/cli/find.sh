@@ -188,4 +188,7 @@ expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
-done_after 53
+# Places are round in degrees.
+expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --plan
+prints "2 deg, 3 deg, 4 deg, 5 deg, 6 deg"
+done_after 54

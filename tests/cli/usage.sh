@@ -49,6 +49,9 @@ expect 64 "$clast" run x.yaml -j many
 expect 64 "$clast" run x.yaml -j
 
 # what a newcomer types first
+expect 64 "$clast" simulate disc-explosion --set threshold.angle='60000 deg'
+says "at most 57295.8 deg"
+same "$("$clast" explain 2>/dev/null | awk '$3 == "threshold.angle" { print $4, $5, $6 }')" "deg 4 deg" "an angle for people"
 for word in weibull damage M_1/M ks knob seed projectile weibull.k; do expect 0 "$clast" explain "$word"; done
 prints "target.material.weibull.k"; prints "projectile.material.weibull.k: the same"
 expect 0 "$clast" explain basalt-sphere --set radius='2 cm' --set weibull.m=9 # of two bodies the one that cracks
@@ -122,4 +125,4 @@ says "no 'target.side'; known in 'target' are shape, "; says "width, depth, heig
 for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
   expect 65 bash -c "ulimit -t 10; [ $sanitized -ne 0 ] || ulimit -v 20000000; exec '$clast' $words" # a sanitizer maps terabytes
 done
-done_after 58
+done_after 60
