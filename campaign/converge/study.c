@@ -233,7 +233,7 @@ status study_errors(const struct study *study, size_t from, size_t quantity, str
 enum { FINER = 3 }; /* levels beyond the finest one */
 
 /* Settings 2, 4 and 8 times finer than the finest level, whose errors follow from the law: its distance to the limit
- * shrinks at least as the least order. They have no runs. */
+ * shrinks at least as the least order. They have no runs; one may be a level that the study had no time for. */
 static status add_finer(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
                         size_t *count, struct convergence_row *rows, int64_t *points, struct error *error) {
   const struct knob *knob = ladder->levels.knob;
@@ -242,14 +242,24 @@ static status add_finer(const struct study_ladder *ladder, const struct study_fo
     return STATUS_OK;
   for (int i = 1; i <= FINER; i++) {
     const double share = pow(pow(2, -i * fabs(knob->step_power)), LIMIT_ORDER_LEAST);
-    struct convergence_row *row = &rows[*count];
     struct error refused;
     SCENE scene = scene_copy(ladder->base);
-    field_defaults(&convergence_table, row);
-    snprintf(row->setting, sizeof row->setting, "%.6g",
-             strtod(finest->setting, NULL) * pow(2, knob->step_power < 0 ? i : -i));
-    if (ladder_turn(knob, scene, row->setting, &refused) != STATUS_OK || !ladder_is_kept(knob, scene))
+    char setting[FIELD_TEXT_SIZE];
+    snprintf(setting, sizeof setting, "%.6g", strtod(finest->setting, NULL) * pow(2, knob->step_power < 0 ? i : -i));
+    if (ladder_turn(knob, scene, setting, &refused) != STATUS_OK || !ladder_is_kept(knob, scene))
       continue;
+    ladder_setting(knob, scene, setting, sizeof setting); /* as levels spell it */
+    size_t place = 0;
+    while (place < found->count && strcmp(rows[place].setting, setting) != 0)
+      place++;
+    if (place < found->count) {
+      if (isnan(rows[place].resolution))
+        rows[place].resolution = finest->resolution * share;
+      continue;
+    }
+    struct convergence_row *row = &rows[*count];
+    field_defaults(&convergence_table, row);
+    memcpy(row->setting, setting, sizeof row->setting);
     memcpy(row->knob, finest->knob, sizeof row->knob);
     memcpy(row->quantity, finest->quantity, sizeof row->quantity);
     row->step = finest->step * pow(2, -i * fabs(knob->step_power));

@@ -127,8 +127,17 @@ const char *study_show_error(double error, bool at_least, char text[UNCERTAINTY_
   return text;
 }
 
+/* Mean of a level with its interval, as of any table. */
+static struct sample_summary summary_of(const struct study *study, const struct study_ladder *ladder, size_t level,
+                                        size_t quantity) {
+  struct sample_summary mean = sample_summarise((size_t)ladder->seeds, ladder->values[quantity][level], 0.95);
+  const struct sample_range range = sample_range(study->quantity[quantity].row);
+  sample_in_range(&mean, &range, 0.95);
+  return mean;
+}
+
 static void print_level(struct table *table, const struct study_ladder *ladder, const struct convergence_row *row,
-                        const struct ask_doubts *doubts) {
+                        bool weak, const struct ask_doubts *doubts) {
   char setting[160], text[UNCERTAINTY_TEXT];
   /* Of runs that differ in their last bits only. */
   const bool rounding = fabs(row->bias) < 1e-12 * fabs(row->mean) && row->bias_half_width < 1e-12 * fabs(row->mean);
@@ -141,6 +150,7 @@ static void print_level(struct table *table, const struct study_ladder *ladder, 
   table_integer(table, row->n);
   table_rests_on(table, doubts);
   table_reals(table, 2, (const double[]){row->mean, row->half_width});
+  table_integer(table, weak);
   table_rests_on(table, doubts);
   table_reals(table, 2, (const double[]){rounding ? 0 : row->bias, rounding ? 0 : row->bias_half_width});
   if (isfinite(row->error))
@@ -229,7 +239,6 @@ static bool seeds_are_equal(size_t count, const struct study_found *found) {
 /* "M_1/M = 0.218 +- 0.026 (seeds, 95 %). Error of the resolution: >= 0.09 (grains >= 0.05, time_step 0.04)." */
 static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
                            const struct study_found *found, FILE *out) {
-  const struct field *field = study->quantity[quantity].row;
   size_t knob = 0, level = 0;
   if (!find_told(count, found, &knob, &level))
     return;
@@ -237,9 +246,8 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   const struct convergence_row *told = &found[knob].rows[level];
   char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT];
   charts_label(study->quantity[quantity].name, label);
-  struct sample_summary mean = sample_summarise((size_t)ladder->seeds, ladder->values[quantity][level], 0.95);
-  const struct sample_range range = sample_range(field);
-  sample_in_range(&mean, &range, 0.95);
+  const struct sample_range range = sample_range(study->quantity[quantity].row);
+  const struct sample_summary mean = summary_of(study, ladder, level, quantity);
   uncertainty_seeds(&mean, text);
   if (!told->base)
     fprintf(out, "%s = %s: ", told->knob, told->setting);
@@ -406,9 +414,10 @@ static status print_levels(struct printing *printing, size_t from, size_t quanti
                            const struct study_found *found, struct error *error) {
   const struct study *study = printing->study;
   TABLE table = table_new(printing->format, stdout);
-  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", NULL});
+  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "mean_hw95", NULL});
   table_range(table, views_range(study->quantity[quantity].name));
-  table_columns(table, (const char *const[]){"bias", "bias_hw95", "error", "cpu_s", "frontier", "sd", NULL});
+  table_columns(table,
+                (const char *const[]){"mean_weak", "bias", "bias_hw95", "error", "cpu_s", "frontier", "sd", NULL});
   static const char *const rare[] = {"skewness",        "share of upper mode", "correlation",
                                      "correlation low", "correlation high",    "pays from correlation"};
   for (size_t c = 0; c < sizeof rare / sizeof rare[0]; c++) {
@@ -419,7 +428,8 @@ static status print_levels(struct printing *printing, size_t from, size_t quanti
     for (size_t l = 0; l < found[i].count; l++) {
       struct ask_doubts doubts;
       TRY(read_doubts(printing, &study->ladder[from + i], l, quantity, &doubts, error));
-      print_level(table, &study->ladder[from + i], &found[i].rows[l], &doubts);
+      const bool weak = summary_of(study, &study->ladder[from + i], l, quantity).weak;
+      print_level(table, &study->ladder[from + i], &found[i].rows[l], weak, &doubts);
     }
   TRY(table_end(table, error));
   for (size_t k = 0; k < LEGEND; k++)

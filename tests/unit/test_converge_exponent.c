@@ -59,7 +59,8 @@ struct fixture {
   struct study_ladder *ladder;
 };
 
-static void set_up(struct fixture *f, const char *file, const char *quantity, uint64_t missing) {
+static void set_up_levels(struct fixture *f, const char *file, const char *quantity, uint64_t missing,
+                          const char *settings) {
   char path[64];
   struct ladder levels;
   char *notes = NULL;
@@ -69,24 +70,28 @@ static void set_up(struct fixture *f, const char *file, const char *quantity, ui
   assert_int_equal(store_open_writer(fixture_path(path, file), &f->store, NULL, 0, &error), STATUS_OK);
   assert_int_equal(scene_load("disc-explosion", NULL, &f->scene, &error), STATUS_OK);
   assert_int_equal(study_quantity_find(f->scene->kind, quantity, &f->study.quantity[0], &error), STATUS_OK);
-  assert_int_equal(ladder_make(engine_knob(f->scene->kind, "time_step", &error), f->scene, "1 us,0.5 us", &levels,
-                               &notes, &error),
+  assert_int_equal(ladder_make(engine_knob(f->scene->kind, "time_step", &error), f->scene, settings, &levels, &notes,
+                               &error),
                    STATUS_OK);
   free(notes);
   assert_int_equal(study_add(&f->study, f->scene, &levels, &error), STATUS_OK);
   f->ladder = &f->study.ladder[0];
   f->ladder->seeds = SEEDS;
   assert_int_equal(store_begin_session(f->store, "{\"version\":\"test\"}", &session, &error), STATUS_OK);
-  for (size_t l = 0; l < LEVELS; l++) {
+  for (size_t l = 0; l < f->ladder->levels.count; l++) {
     const struct scene *scene = f->ladder->levels.level[l].scene;
     int64_t point = 0;
     assert_int_equal(store_add_point(f->store, 0, scene, 0, NULL, &point, &error), STATUS_OK);
     for (uint64_t seed = 1; seed <= SEEDS; seed++)
-      if (seed != missing)
+      if (seed != missing && l < LEVELS)
         add_run(f->store, session, point, scene, seed, l ? fine_beta : coarse_beta);
   }
   assert_int_equal(store_flush(f->store, &error), STATUS_OK);
   assert_int_equal(study_read(&f->study, f->ladder, f->store, &error), STATUS_OK);
+}
+
+static void set_up(struct fixture *f, const char *file, const char *quantity, uint64_t missing) {
+  set_up_levels(f, file, quantity, missing, "1 us,0.5 us");
 }
 
 static void tear_down(struct fixture *f) {
@@ -212,12 +217,32 @@ static void one_seed_tells_nothing(void **state) {
   tear_down(&f);
 }
 
+/* A level that the study had no time for is one of those that the law tells beyond the finest: it is there once. */
+static void a_level_beyond_the_finest_is_there_once(void **state) {
+  (void)state;
+  struct fixture f;
+  double count, settings, known;
+  set_up_levels(&f, "beyond", OUTCOME_DEFAULT, 0, "1 us,0.5 us,0.25 us,0.125 us");
+  for (size_t l = 0; l < 4; l++)
+    for (size_t s = 0; s < SEEDS; s++)
+      f.ladder->values[0][l][s] = l == 3 ? (double)NAN : 0.3 + 0.1 * pow(0.5, (double)l) + 1e-4 * (double)(s * l % 3);
+  f.ladder->left_out[3] = true;
+  assert_int_equal(study_store(&f.study, f.store, &error), STATUS_OK);
+  assert_int_equal(answer_number(f.store, &count, &error, "SELECT count(*) FROM convergence"), STATUS_OK);
+  assert_int_equal(answer_number(f.store, &settings, &error, "SELECT count(DISTINCT setting + 0) FROM convergence"),
+                   STATUS_OK);
+  assert_int_equal(answer_number(f.store, &known, &error, "SELECT count(resolution) FROM convergence"), STATUS_OK);
+  assert_true(count == 6 && settings == count && known == count);
+  tear_down(&f);
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(levels_have_the_pooled_exponent),
                                      cmocka_unit_test(the_bias_is_found),
                                      cmocka_unit_test(the_store_has_the_second_error),
                                      cmocka_unit_test(a_missing_seed_keeps_its_place),
-                                     cmocka_unit_test(one_seed_tells_nothing)};
+                                     cmocka_unit_test(one_seed_tells_nothing),
+                                     cmocka_unit_test(a_level_beyond_the_finest_is_there_once)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
