@@ -47,7 +47,8 @@ struct finding {
   char results[ASK_DOUBTS_RESULTS];
   double beyond; /* sum over knobs without a limit: what a law of the least order leaves beyond the finest level, by the
                     changes from coarser ones; NaN: not known */
-  char ran[64];  /* the knob of the last level with runs, and its levels so far */
+  char own_out[128]; /* the scene's own level of the last knob, as "points = 400, ", if no run or law tells it; "" */
+  char ran[64];      /* the knob of the last level with runs, and its levels so far */
   size_t levels;
   double step[KNOB_LEVELS], change[KNOB_LEVELS];
   char marks[ACCURACY_MARKS];    /* of the level that becomes an option */
@@ -220,7 +221,14 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->change[finding->levels++] = fabs(row->bias) + row->bias_half_width;
   }
   const bool left_out = row->n == 0 && !row->base && isnan(row->resolution) && ran; /* finer than a level that ran */
-  if (resolution && left_out && !*finding->accuracy->left_out)
+  if (!ran)
+    *finding->own_out = '\0';
+  if (resolution && ran && row->base && row->open && row->n == 0)
+    snprintf(finding->own_out, sizeof finding->own_out, "%.60s = %.60s, ", row->knob, row->setting);
+  if (resolution && left_out && !*finding->accuracy->left_out && *finding->own_out)
+    snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%s%.30s", finding->own_out,
+             row->setting);
+  else if (resolution && left_out && !*finding->accuracy->left_out)
     snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
 }
@@ -829,12 +837,15 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   else
     advise_seeds(accuracy, campaign, best, next, sizeof next);
   char wider[32];
-  const double percent = campaign->accuracy_of_value ? 100 / fabs(best->mean) : 1;
-  snprintf(wider, sizeof wider, "%.2g", 1.3 * least * percent);
-  if (1.3 * least < fmin(fabs(best->mean), best->most) && 1.3 * least > best->within &&
-      is_reached(accuracy, campaign, strtod(wider, NULL) / (campaign->accuracy_of_value ? 100 : 1)))
-    text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %s%s}`, or ", quantity, wider,
-                campaign->accuracy_of_value ? " %" : unit);
+  const double percent = campaign->accuracy_of_value ? 100 : 1,
+               mean = campaign->accuracy_of_value ? fabs(best->mean) : 1;
+  for (double more_than = 1.3; more_than * least < fmin(fabs(best->mean), best->most) && !*more && least > 0;
+       more_than *= 2) {
+    snprintf(wider, sizeof wider, "%.2g", more_than * least * percent / mean);
+    if (more_than * least > best->within && is_reached(accuracy, campaign, strtod(wider, NULL) / percent))
+      text_append(more, sizeof more, "allow more, such as `accuracy: {quantity: %s, within: %s%s}`, or ", quantity,
+                  wider, campaign->accuracy_of_value ? " %" : unit);
+  }
   snprintf(smallest, sizeof smallest,
            "The smallest error is %s%.2g%s%s%s, with %s%s mean is %.4g%s (%" PRId64 " seeds)",
            best->open ? "about " : "", least, unit, share,

@@ -604,6 +604,9 @@ for grains, whole, most in rows:
     assert abs(min(grains + step, most) - whole) < 1e-12, (grains, step, whole, most)
 PY
 ok "errors of the knobs of two studies"
+# A weak interval has its mark in the table, too, and one that ends at 0 its ends.
+expect 0 "$clast" converge steps.yaml --set threshold.strain='12 %' --knob grains=0.015m,0.012m,0.01m -Q dust_fraction --seeds 4 --within off --store weak.db -j 2
+grep -Eq '^grains +0\.015 m +4 +0\.[0-9]+ \(0 to 0\.[0-9]+\)~' out && grep -Eq '^grains +0\.012 m +4 +0\.[0-9]+ ± 0\.[0-9]+~' out || fail "weak intervals of levels: $(cat out)"
 # A knob of numbers without a law has no bound on any screen: a run that waits longer breaks more.
 expect 0 "$clast" converge steps.yaml --knob stop,integrator -Q dust_fraction --seeds 4 --within off --store stop.db -j 2
 prints "stop: no law says how far it is from a limit"
@@ -646,4 +649,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 166
+done_after 167

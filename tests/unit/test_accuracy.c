@@ -264,10 +264,11 @@ static void levels_that_differ_little_are_enough(void **state) {
  * too. Coarser than all it may be anywhere. */
 static void an_own_level_that_did_not_run(void **state) {
   (void)state;
-  static const struct level levels[2][4] = {{{"8e-6", 0.012, 1e-4, 5, false, true, 8e-6},
+  static const struct level levels[2][5] = {{{"8e-6", 0.012, 1e-4, 5, false, true, 8e-6},
                                              {"4e-6", 0.004, 1e-4, 10, false, true, 4e-6},
                                              {"2e-6", 0.004, 1e-4, 20, false, true, 2e-6},
-                                             {"1e-6", 0.004, NAN, NAN, true, true, 1e-6}},
+                                             {"1e-6", 0.004, NAN, NAN, true, true, 1e-6},
+                                             {"5e-7", NAN, NAN, NAN, false, true, 5e-7}},
                                             {{"1e-6", 0.012, NAN, NAN, true, true, 1e-6},
                                              {"5e-7", 0.012, 1e-4, 5, false, true, 5e-7},
                                              {"2.5e-7", 0.004, 1e-4, 10, false, true, 2.5e-7},
@@ -277,10 +278,12 @@ static void an_own_level_that_did_not_run(void **state) {
     struct store *store = NULL;
     struct accuracy accuracy;
     assert_int_equal(store_open_writer(fixture_path(path, "left-out"), &store, NULL, 0, &error), STATUS_OK);
-    add_study(store, campaign, "time_step", 4, levels[coarser]);
+    add_study(store, campaign, "time_step", coarser ? 4 : 5, levels[coarser]);
     assert_int_equal(store_close(store, &error), STATUS_OK);
     assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
     assert_true((accuracy.chosen < accuracy.count) == !coarser);
+    if (!coarser) /* a level that is finer still was left out, too */
+      assert_string_equal(accuracy.left_out, "time_step = 1e-6, 5e-7");
     accuracy_clear(&accuracy);
     campaign_free(campaign);
   }
