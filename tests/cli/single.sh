@@ -74,10 +74,10 @@ expect 0 "$clast" picture disc-explosion_000001.hdf middle.png
 silent err # what only the end tells is no doubt before it
 expect 0 "$clast" picture disc-explosion_000002.hdf middle.png
 says "marked (!), 1 of 1 runs: cut"
-expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]:0:4}" --set body.diameter='6 cm' --snapshots 5 -q
+expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]:2:2}" --set body.diameter='6 cm' --snapshots 5 -q
 says "3 of 5 snapshots written" # also with -q
 # The time that is offered lies after the end, 1.2754 ms here: a rounded one before it would cut the run.
-quiet=("${small[@]:0:4}" --set body.diameter='6 cm' --set stop.least_time='1 ms' --set fidelity.time_step='0.2 us')
+quiet=("${small[@]:2:2}" --set body.diameter='6 cm' --set stop.least_time='1 ms' --set fidelity.time_step='0.2 us')
 expect 0 "$clast" simulate disc-explosion --seed 7 "${quiet[@]}" --snapshots 5
 end=$(tr '\n' ' ' <err | sed -n "s/.*--set stop.end_time='\([^']*\)'.*/\1/p")
 same "$end" "0.001276 s" "the time that gives all snapshots"
