@@ -33,6 +33,15 @@ void charts_label(const char *column, char label[CHARTS_LABEL]) {
     field_label_path(column, label, CHARTS_LABEL);
 }
 
+status charts_scene(struct store *store, char scene[CHARTS_LABEL], struct error *error) {
+  char names[CHARTS_LABEL];
+  *scene = '\0';
+  TRY(ask_points_scenes(store, names, sizeof names, error));
+  if (*names && !strchr(names, ','))
+    text_append(scene, CHARTS_LABEL, ", %s", names);
+  return STATUS_OK;
+}
+
 status charts_axis(struct store *store, const char *column, char label[CHARTS_LABEL], struct error *error) {
   char shown[96];
   struct ask_column written;

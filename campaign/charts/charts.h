@@ -33,6 +33,8 @@ void charts_label(const char *column, char label[CHARTS_LABEL]);
 status charts_axis(struct store *store, const char *column, char label[CHARTS_LABEL], struct error *error);
 /* The paths of inputs, separated by ", ", as their names: "impact speed, weibull m". */
 void charts_labels(const char *paths, char *labels, size_t size);
+/* ", disc-explosion" for a title where all points have one scene, else "". */
+status charts_scene(struct store *store, char scene[CHARTS_LABEL], struct error *error);
 /* "95 % intervals over seeds", or over points that differ in the pooled inputs, or of some marks each. */
 void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t size);
 /* Describes the known error of the resolution of a quantity at the points of the store, before `adds` if there is

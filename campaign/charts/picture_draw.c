@@ -62,21 +62,28 @@ void picture_draw_time(double seconds, char text[32]) {
   snprintf(text, 32, "%.4g %s", seconds, unit[k]);
 }
 
-/* "disc_000003: dem, seed 1, 812 µs". The scene and the number of a snapshot are the file's name; the fields of a
- * stored run are named by a hash, and the store knows the scene. Of a movie: the name of its series; of a sheet, also
- * no time. */
+/* "disc_000003: seed 1, 812 µs", "end (impact): seed 1, 812 µs". The scene and the number of a snapshot are the file's
+ * name; the fields of a stored run are named by a hash, and the store knows the scene. Of a movie: the name of its
+ * series; of a sheet, also no time. */
 static void name_run(const char *fields, const struct movie *movie, const char *engine, long long seed, double time,
                      char *text, size_t size) {
   const char *path = movie ? movie->series : fields;
   const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
   const size_t length = strcspn(base, ".");
-  char shown[32];
+  char shown[32], kind[64] = ""; /* the protocol of the scene */
+  struct snapshot_read *file;
   if (length < 32)
     snprintf(text, size, "%.*s", (int)length, base);
   else
     ask_scene_of_fields(fields, text, size);
+  if (snapshot_read_open(fields, &file, NULL) == STATUS_OK) {
+    snapshot_read_text(file, "inputs", "kind", kind, sizeof kind);
+    snapshot_read_close(file);
+  }
+  if (*kind && length < 32 && strncmp(text, kind, strlen(kind)) != 0)
+    text_append(text, size, " (%s)", kind);
   if (*engine)
-    text_append(text, size, "%s%s, seed %lld", *text ? ": " : "", engine, seed);
+    text_append(text, size, "%sseed %lld", *text ? ": " : "", seed);
   picture_draw_time(time, shown);
   if (*shown && !(movie && movie->sheet))
     text_append(text, size, ", %s", shown);

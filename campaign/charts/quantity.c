@@ -635,8 +635,9 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     TRY(add_mean(plot, &quantity->row[i], error));
   TRY(check_told(quantity, error));
   char x[CHARTS_LABEL], by[CHARTS_LABEL] = "", y[CHARTS_LABEL], name[CHARTS_LABEL], over[CHARTS_LABEL];
-  char title[ASK_GROUP_POOLED + 4 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
-  char made[ASK_GROUP_POOLED + 60];
+  char title[ASK_GROUP_POOLED + 5 * CHARTS_LABEL], caption[1200], intervals[600], resolution[400];
+  char made[ASK_GROUP_POOLED + 60], scene[CHARTS_LABEL];
+  TRY(charts_scene(store, scene, error));
   TRY(charts_axis(store, quantity->column[0], x, error));
   if (quantity->axes == 2)
     TRY(charts_axis(store, quantity->column[1], by, error));
@@ -657,7 +658,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
   charts_label(quantity->name, name);
   charts_label(quantity->column[0], over);
   made_of(quantity, made, sizeof made);
-  snprintf(title, sizeof title, "%s over %s: %s", name, over, made);
+  snprintf(title, sizeof title, "%s over %s%s: %s", name, over, scene, made);
   if (*title >= 'a' && *title <= 'z')
     *title = (char)(*title - 'a' + 'A');
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
@@ -710,16 +711,17 @@ static double three_digits_up(double half_width) {
 static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count,
                          const struct picture_tile *tile, const struct panels *panels, double widest,
                          const struct picture_page *page, struct error *error) {
-  char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 400], caption[1100];
-  char made[ASK_GROUP_POOLED + 60], intervals[600], resolution[400];
+  char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1100];
+  char made[ASK_GROUP_POOLED + 60], intervals[600], resolution[400], scene[CHARTS_LABEL];
   const char *label[MOST_PANELS];
   for (size_t p = 0; p < panels->count; p++)
     label[p] = panels->text[p];
   TRY(charts_axis(store, quantity->column[0], x, error));
   TRY(charts_axis(store, quantity->column[1], y, error));
   TRY(charts_axis(store, quantity->name, z, error));
+  TRY(charts_scene(store, scene, error));
   made_of(quantity, made, sizeof made);
-  snprintf(title, sizeof title, "%s: %s", z, made);
+  snprintf(title, sizeof title, "%s%s: %s", z, scene, made);
   title[0] = (char)toupper((unsigned char)title[0]);
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "", resolution, sizeof resolution);

@@ -266,8 +266,7 @@ status one_run(const struct scene *scene, const struct one_run_options *options,
   if (code == STATUS_OK && options->picture && result->outcome.state != OUTCOME_INVALID) { /* else there is no body */
     char caption[FIELD_TEXT_SIZE + 128], time[32];
     picture_draw_time(result->outcome.time, time);
-    snprintf(caption, sizeof caption, "%s: %s, seed %lld, %s", scene->name, scene->kind->name, (long long)options->seed,
-             time);
+    snprintf(caption, sizeof caption, "%s: seed %lld, %s", scene->name, (long long)options->seed, time);
     code = picture_draw(fields, options->picture, &(struct picture_choice){.caption = caption}, error);
   }
   if (*temporary)

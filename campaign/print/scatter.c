@@ -155,6 +155,7 @@ static void release_samples(struct samples *samples) {
 status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error) {
   char column[ASK_GROUP_NAME], axis[CHARTS_LABEL] = "", caption[CHARTS_LABEL] = "";
+  char scene[CHARTS_LABEL], title[CHARTS_LABEL + 32] = "";
   struct picture_sample sample[PICTURE_SERIES];
   __attribute__((cleanup(release_samples))) struct samples samples = {0};
   struct ask_doubts doubts = {0};
@@ -185,7 +186,9 @@ status print_scatter_picture(struct store *store, const struct scatter_choice *c
   for (size_t i = 0; i < samples.count; i++)
     sample[i].histogram = scatter_histogram_of(&samples.scatter[i], width);
   charts_doubts(store, &doubts, caption, sizeof caption);
-  const struct picture_words words = {"Scatter of the runs", *caption ? caption : NULL, axis, NULL};
+  TRY(charts_scene(store, scene, error));
+  text_append(title, sizeof title, "Scatter of the runs%s", scene);
+  const struct picture_words words = {title, *caption ? caption : NULL, axis, NULL};
   TRY(picture_scatter(page, &words, samples.count, sample, error));
   if (more)
     fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);

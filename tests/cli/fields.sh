@@ -14,7 +14,7 @@ expect 0 "$clast" run kept.yaml --store here/kept.db -j 2
 says "0 runs computed"
 gone=$(ls here/kept-fields | head -1)
 # A picture has the scene's name, which the store beside the fields knows.
-title=$(python -c "import h5py, sys; run = h5py.File(sys.argv[1])['run'].attrs; print('dem, seed %d, %.4g ms' % (run['seed'], 1e3 * float(run['time'])))" "here/kept-fields/$gone")
+title=$(python -c "import h5py, sys; run = h5py.File(sys.argv[1])['run'].attrs; print('seed %d, %.4g ms' % (run['seed'], 1e3 * float(run['time'])))" "here/kept-fields/$gone")
 expect 0 "$clast" picture "here/kept-fields/$gone" named.png
 expect 0 "$clast" picture "here/kept-fields/$gone" by-hand.png --caption "disc-explosion: $title"
 cmp -s named.png by-hand.png || fail "the picture of stored fields has not the scene's name"

@@ -293,8 +293,10 @@ expect 66 "$clast" map none.db m.png -x strain -y angle
 ok "nothing was left behind"
 
 expect 0 "$clast" simulate disc-explosion --seed 3 --set 'body.diameter=8 cm' --set 'stop.end_time=1 ms' --fields disc.h5
-expect 0 "$clast" picture disc.h5 disc.png --caption "seed 3"
+expect 0 "$clast" picture disc.h5 own.png
+expect 0 "$clast" picture disc.h5 disc.png --caption "disc (disc-explosion): seed 3, 1 ms"
 is_png disc.png
+cmp -s own.png disc.png || fail "the title of a picture of a file"
 expect 66 "$clast" picture none.h5 none.png
 echo "not HDF5" >text.h5
 expect 65 "$clast" picture text.h5 none.png
@@ -409,6 +411,7 @@ same "$(sed '/^$/,$d' sampled.dat | grep -c '^NaN')" 32 "gaps between the points
 expect 0 "$clast" map sampled.db sampled.svg -x strain -y angle --keep-script # too many marks for numbers
 same "$(grep -o '>~' sampled.svg | wc -l)" "$(sed -n 's/.*; ~, \([0-9]*\) of 32: weak.*/\1/p' sampled.gp)" "weak marks"
 expect 0 "$clast" plot small.db grid.png -x strain --by angle --keep-script
+grep -q "^title_text = '[^:]*, disc-explosion: " grid.gp sampled.gp || fail "a title without the scene"
 same "$(sed '/^$/,$d' grid.dat | grep -c '^NaN' || true)" 0 "gaps between the points of a grid"
 # Two campaigns in one store: from point to point the body changes, too, and chart and table say so.
 tiny second
@@ -434,4 +437,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 158
+done_after 159

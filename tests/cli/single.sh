@@ -90,7 +90,7 @@ says "4 snapshots of an earlier run lie beside these, from disc-explosion_000001
 cmp -s end.h5 later.h5 || fail "the fields of the same run differ from one second to the next"
 cmp -s end.h5 disc-explosion_000000.hdf || fail "a single snapshot is not one of the end"
 time=$(python -c "import h5py; print('%.4g' % (1e3 * float(h5py.File('end.h5')['run'].attrs['time'])))") # s
-expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion: dem, seed 7, $time ms"
+expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion: seed 7, $time ms"
 cmp -s end.png again.png || fail "the picture of the same fields differs"
 expect 66 "$clast" picture missing.h5 x.png
 head -c 5000 /dev/urandom >noise.h5
