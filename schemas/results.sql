@@ -306,7 +306,7 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   first_break REAL, -- [s] Time of the first break; off when none broke.
   last_break REAL, -- [s] Time of the last break; off when none broke.
   energy_input REAL, -- [J/m] Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.
-  threshold_energy REAL, -- [J/m] Energy that would bring every beam to the stretching threshold.
+  threshold_energy REAL, -- [J/m] Energy that would bring every beam, unbent, to its own threshold. Off without breaking.
   stable_time_step REAL, -- [s] Longest stable time step of the body as it starts: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.
   sound_speed_extension REAL, -- [m/s] Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice's value).
   sound_speed_compression REAL, -- [m/s] Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave.
@@ -323,9 +323,9 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   energy_friction REAL, -- [J/m] Energy taken by friction.
   energy_broken_beam REAL, -- [J/m] Energy of the beams when they broke: the energy of the new surfaces. With contact.bonded off, less what contacts store that begin with a break.
   energy_external_work REAL, -- [J/m] Work done by moving boundaries.
-  young_modulus REAL, -- [Pa] K: slope of stress against strain under uniaxial load.
+  young_modulus REAL, -- [Pa] K: slope of stress against strain under uniaxial load, up to the first break.
   poisson_ratio REAL, -- [1] nu: minus the slope of lateral against axial strain.
-  strength REAL, -- [Pa] Largest stress under load.
+  strength REAL, -- [Pa] Largest stress under load, at any time step.
   failure_strain REAL, -- [1] Strain at the largest stress.
   final_strain REAL, -- [1] Strain at the end of the loading.
   upright_share REAL, -- [1] Compression: broken beams whose crack (the common side) lies within 30 degrees of the load's direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.
@@ -1281,13 +1281,13 @@ INSERT INTO column_doc VALUES ('result_dem', 'stable_time_step', 's', 'Longest s
 
 INSERT INTO column_doc VALUES ('result_dem', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'strength', 'Pa', 'Largest stress under load.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'strength', 'Pa', 'Largest stress under load, at any time step.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'threshold_energy', 'J/m', 'Energy that would bring every beam to the stretching threshold.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'threshold_energy', 'J/m', 'Energy that would bring every beam, unbent, to its own threshold. Off without breaking.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'upright_share', '1', 'Compression: broken beams whose crack (the common side) lies within 30 degrees of the load''s direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load, up to the first break.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 1);
 
@@ -1781,7 +1781,7 @@ INSERT INTO column_doc VALUES ('runs', 'state', NULL, 'How the run ended: with a
 
 INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load.', 0);
+INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load, at any time step.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'study', NULL, '1: only studies and searches (clast converge, find, ...) asked for the point; 0 also in a store without other campaigns', 0);
 
@@ -1789,7 +1789,7 @@ INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, 'above 0: left out of st
 
 INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'threshold_energy', 'J/m', 'Energy that would bring every beam to the stretching threshold.', 0);
+INSERT INTO column_doc VALUES ('runs', 'threshold_energy', 'J/m', 'Energy that would bring every beam, unbent, to its own threshold. Off without breaking.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'time', 's', 'Simulated time at the end.', 0);
 
@@ -1805,7 +1805,7 @@ INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the su
 
 INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Conditions that a usable run does not meet, a word for each; empty when it meets all.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
+INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load, up to the first break.', 0);
 
 INSERT INTO column_doc VALUES ('session', 'campaign_id', NULL, 'the campaign it computed; NULL in sessions of older programs that computed nothing', 0);
 

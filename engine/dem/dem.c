@@ -191,7 +191,9 @@ static status set_up(struct dem_run *run, struct error *error) {
         "fidelity.time_step is %.4g s, but with fidelity.integrator %s this body is unstable above %.4g s: "
         "give a shorter step, at most half of that for good energy",
         in->fidelity.time_step, in->fidelity.integrator == DEM_GEAR ? "gear" : "verlet", run->stable_time_step);
-  return dem_protocol_start(run, error);
+  TRY(dem_protocol_start(run, error));
+  run->threshold_energy = dem_system_threshold_energy(run->system);
+  return STATUS_OK;
 }
 
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
@@ -313,8 +315,8 @@ const struct engine_kind dem_engine = {
         "names at each input.",
     /* 2: the reference side of a contact has a floor. 3: contacts that begin with a break (contact.bonded off) are in
      * the ledger; grains too fast for the time step end a run. 4: Gear's first coefficients; thresholds by place;
-     * stop.least_time. */
-    .results_version = 4,
+     * stop.least_time. 5: thresholds of threshold_energy; strength is not an average; range of slopes with breaks. */
+    .results_version = 5,
     .inputs = &dem_inputs,
     .results = &dem_results,
     .knobs = knobs,

@@ -99,7 +99,7 @@ cmp -s out one.json || fail "a search that was killed answers otherwise"
 same "$(number killed.db 'select count(*) from run')" "$runs" "runs after a kill"
 
 # A narrower interval goes on from these runs; few runs end with a wide one.
-expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.001 --max-runs "$((runs + 8))"
+expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.002 --max-runs "$((runs + 8))"
 says "$runs found in the store"; tr '\n' ' ' <out >line; mv line out
 prints "a larger --max-runs goes on. The width asked for needs about "
 # The last round takes what is left, to less than a run a place.
@@ -109,9 +109,9 @@ expect 0 "$clast" find disc.yaml --level 0.5 --within 0.0001 --max-runs 48 --sto
 grep -q "other runs" err && fail "no other search"
 # Other answers.
 expect 0 "$clast" find disc.yaml --level 1
-says "$(($(number disc.db "select count(*) from run") - 20)) other runs at places of searches along threshold.strain"
+says "$(($(number disc.db "select count(*) from run") - $(grep -oE 'from all [0-9]+' out | tr -dc 0-9))) other runs at places of searches along threshold.strain"
 prints "is below 1 for threshold.strain from 1 % to 6 %"; prints "no crossing in the"
-grep -q "runs: between" err && fail "an interval of no crossing"
+grep -E '^clast: [0-9]+ runs' err | tail -1 | grep -q between && fail "an interval of no crossing"
 grep -q "holds the level" err && fail "no mean is above 1"
 says "largest_fraction at threshold.strain = 6 %: resolution: not studied" # the end that is nearest to the level
 # No crossing is decided from all runs; the interval of a row's own runs may hold the level, which is said.
@@ -161,7 +161,7 @@ ok "the interval between two whole numbers"
 sed 's/stop.end_time: 4 ms/stop.end_time: 0.3 ms, fidelity.time_step: 4 us/; s/disc.db/coarse.db/' disc.yaml >coarse.yaml
 expect 0 "$clast" find coarse.yaml --level 0.5 --max-runs 40
 head -1 out | grep -q ' !' || fail "no mark"
-says "marked (!), 34 of 40 runs: step: fidelity.time_step over"
+says "marked (!), 34 of 39 runs: step: fidelity.time_step over"
 # No answer without runs: the step is far too long.
 sed 's/stop.end_time: 4 ms/&, fidelity.time_step: 1 ms/; s/disc.db/failed.db/' disc.yaml >failed.yaml
 expect 1 "$clast" find failed.yaml --level 0.5 --max-runs 20

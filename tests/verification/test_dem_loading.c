@@ -153,6 +153,37 @@ static void threshold_energy_of_a_square_lattice(void **state) {
                      inputs.threshold.strain * inputs.threshold.strain;
   fixture_near(ran.results.dem.threshold_energy, 49.0 * one, 1e-10 * one, "threshold energy");
   free(ran.fragments);
+
+  inputs = DEM_CASE("disc-explosion", "body.diameter=8 cm", "grain.spacing=1 cm", "grain.disorder=0",
+                    "stop.end_time=2 us");
+  ran = run_case_run(&dem_engine, &inputs, 1);
+  const double beams = (double)ran.results.dem.beams; /* without those of the explosive */
+  fixture_near(ran.results.dem.threshold_energy, beams * one, 1e-9 * one, "without the explosive");
+  free(ran.fragments);
+
+  /* thresholds of an exponential law: their squares have the mean 2 and the variance 20 */
+  inputs = DEM_CASE("block-impact", "grain.disorder=0", "threshold.modulus=1", "stop.end_time=2 us");
+  ran = run_case_run(&dem_engine, &inputs, 1);
+  const double mean = ran.results.dem.threshold_energy / one / (double)ran.results.dem.beams;
+  fixture_near(mean, 2.0, 5.0 * sqrt(20.0 / (double)ran.results.dem.beams), "drawn thresholds");
+  free(ran.fragments);
+}
+
+/* Every beam along the load of a square lattice breaks at t_eps, so its strength is E t_eps, wherever the load ends. */
+static void strength_of_a_square_lattice(void **state) {
+  (void)state;
+  const char *const ends[] = {"loading.strain_end=0.1 %", "loading.strain_end=3 %"};
+  for (int k = 0; k < 2; k++) {
+    struct dem_inputs inputs = DEM_CASE("uniaxial", "grain.disorder=0", "body.columns=8", "body.rows=8",
+                                        "threshold.breaking=true", "threshold.strain=0.03 %", "loading.rate=0.1 1/s",
+                                        "loading.ramp=0.5 ms", "fidelity.time_step=3 us", ends[k]);
+    struct ran ran = run_case_run(&dem_engine, &inputs, 1);
+    const double step = inputs.loading.rate * inputs.fidelity.time_step / inputs.threshold.strain; /* 0.1 % */
+    fixture_near(ran.results.dem.strength / (inputs.beam.young_modulus * inputs.threshold.strain), 1.0, step,
+                 "strength");
+    fixture_near(ran.results.dem.failure_strain / inputs.threshold.strain, 1.0, step, "failure strain");
+    free(ran.fragments);
+  }
 }
 
 /* Mass and moment of inertia of every grain by triangles of its outline, in long double. */
@@ -340,6 +371,7 @@ int main(void) {
                                      cmocka_unit_test(strains_are_those_put_in),
                                      cmocka_unit_test(modes_of_breaking),
                                      cmocka_unit_test(threshold_energy_of_a_square_lattice),
+                                     cmocka_unit_test(strength_of_a_square_lattice),
                                      cmocka_unit_test(energy_of_two_discs_on_approach),
                                      cmocka_unit_test(grains_have_their_inertia),
                                      cmocka_unit_test(grains_pass_where_said),

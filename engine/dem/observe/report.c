@@ -151,8 +151,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
   results->energy.broken_beam = ledger->broken_beam;
   results->energy.external_work = ledger->external_work;
   dem_describe_sound_speeds(&run->inputs, &results->sound_speed_extension, &results->sound_speed_compression);
-  if (run->inputs.threshold.breaking)
-    results->threshold_energy = dem_describe_threshold_energy(&run->inputs, t);
+  results->threshold_energy = run->threshold_energy;
   results->grains = (int64_t)t->cell_count - (run->charge != UINT32_MAX);
   for (size_t p = 0; p < t->pair_count; p++)
     results->beams += t->pair[p][0] != run->charge && t->pair[p][1] != run->charge;

@@ -6,7 +6,8 @@
  * too, the confined ends of K99's figure 7.
  *
  * Stress is the mean of the forces on both sides over the block's first width, strain the change of their distance over
- * its first value; both are averaged over the steps between two samples, which filters the body's vibrations. */
+ * its first value; the curve has their means over the steps between two samples. The strength is no such mean: the
+ * samples depend on the strain at which the run ends. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -113,13 +114,8 @@ static void sample(struct dem_run *run) {
     run->sample[s->frame.samples++] = point;
   s->summed = 0;
   s->stress_sum = s->strain_sum = 0;
-  double stress = sense(run) * point.stress;
-  if (stress > s->stress_peak) {
-    s->stress_peak = stress;
-    s->strain_peak = sense(run) * point.strain;
-    s->time_peak = point.time;
-  } else if (run->inputs.kind == DEM_COMPRESSION && !field_is_off(run->inputs.loading.residual) && point.broken > 0 &&
-             stress < run->inputs.loading.residual * s->stress_peak)
+  if (run->inputs.kind == DEM_COMPRESSION && !field_is_off(run->inputs.loading.residual) && point.broken > 0 &&
+      sense(run) * point.stress < run->inputs.loading.residual * s->stress_peak)
     frame_end(&run->state.frame, DEM_STOP_FAILURE, OUTCOME_COMPLETED, "%s", "");
 }
 
@@ -134,23 +130,28 @@ void dem_loading_record(struct dem_run *run) {
     dem_system_force(run->system, run->upper[k], &fx, &fy, &torque);
     upper += fy;
   }
-  double strain = strain_now(run);
-  s->stress_sum += 0.5 * (lower - upper) / run->section; /* a stretched body pulls its sides inwards */
+  const double strain = strain_now(run);
+  const double stress = 0.5 * (lower - upper) / run->section; /* a stretched body pulls its sides inwards */
+  s->stress_sum += stress;
   s->strain_sum += strain;
+  if (sense(run) * stress > s->stress_peak) {
+    s->stress_peak = sense(run) * stress;
+    s->strain_peak = sense(run) * strain;
+    s->time_peak = dem_system_time(run->system);
+  }
   if (++s->summed == run->sample_interval)
     sample(run);
   if (sense(run) * strain >= run->inputs.loading.strain_end * (1 - 1e-9))
     frame_end(&run->state.frame, DEM_STOP_STRAIN, OUTCOME_COMPLETED, "%s", "");
 }
 
-/* Slope of y against x by least squares with an intercept, over samples with lowest <= |strain| <= highest before the
- * first break. NaN below 3 samples. */
+/* Slope of y against x by least squares with an intercept, over samples with lowest <= |strain| <= highest. NaN below 3
+ * samples. */
 static double slope(const struct dem_run *run, bool lateral, double lowest, double highest) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (size_t k = 0; k < run->state.frame.samples; k++) {
     const struct dem_sample *p = &run->sample[k];
-    if (fabs(p->strain) < lowest || fabs(p->strain) > highest || p->time < run->inputs.loading.ramp ||
-        (run->inputs.kind == DEM_UNIAXIAL && p->broken > 0))
+    if (fabs(p->strain) < lowest || fabs(p->strain) > highest || p->time < run->inputs.loading.ramp)
       continue;
     double y = lateral ? p->lateral_strain : p->stress;
     n += 1;
@@ -193,7 +194,22 @@ static void pattern(const struct dem_run *run, struct dem_results *results) {
 }
 
 double dem_loading_slope_end(const struct dem_run *run) {
-  return run->inputs.kind == DEM_COMPRESSION ? 0.5 * run->state.strain_peak : HUGE_VAL;
+  if (run->inputs.kind == DEM_COMPRESSION)
+    return 0.5 * run->state.strain_peak;
+  for (size_t k = 0; k < run->state.frame.samples; k++)
+    if (run->sample[k].broken > 0)
+      return k > 0 ? fabs(run->sample[k - 1].strain) : 0;
+  return run->inputs.loading.strain_end;
+}
+
+/* From a tenth of the strain that a block bears whole, or of its failure strain, on, after the first vibrations. */
+static double slope_begin(const struct dem_run *run) {
+  return (run->inputs.kind == DEM_COMPRESSION ? 0.2 : 0.1) * dem_loading_slope_end(run);
+}
+
+double dem_loading_bend(const struct dem_run *run) {
+  const double begin = slope_begin(run), end = dem_loading_slope_end(run), middle = (begin + end) / 2;
+  return fabs(slope(run, false, middle, end) / slope(run, false, begin, middle) - 1);
 }
 
 void dem_loading_results(const struct dem_run *run, struct dem_results *results) {
@@ -201,11 +217,9 @@ void dem_loading_results(const struct dem_run *run, struct dem_results *results)
   if (s->frame.samples == 0)
     return;
   results->final_strain = fabs(run->sample[s->frame.samples - 1].strain);
-  /* from a tenth of the final strain on, after the first vibrations; in compression up to half of the failure strain */
-  double highest = dem_loading_slope_end(run);
-  double reference = run->inputs.kind == DEM_COMPRESSION ? s->strain_peak : run->inputs.loading.strain_end;
-  results->young_modulus = slope(run, false, 0.1 * reference, highest);
-  results->poisson_ratio = -slope(run, true, 0.1 * reference, highest);
+  const double lowest = slope_begin(run), highest = dem_loading_slope_end(run);
+  results->young_modulus = slope(run, false, lowest, highest);
+  results->poisson_ratio = -slope(run, true, lowest, highest);
   results->strength = s->stress_peak;
   results->failure_strain = s->strain_peak;
   if (run->inputs.kind == DEM_COMPRESSION)

@@ -33,9 +33,10 @@ struct dem_run {
   struct dem_system *system;
   struct dem_state state;
   double stable_time_step;
-  double angular_start;  /* kg m^2/s per m, about the origin */
-  double grain_diameter; /* m, of the circle of mean area */
-  double passing_speed;  /* m/s: grains that close in faster pass through each other; 0 without contacts */
+  double angular_start;    /* kg m^2/s per m, about the origin */
+  double grain_diameter;   /* m, of the circle of mean area */
+  double threshold_energy; /* J/m, at the start; NaN without breaking */
+  double passing_speed;    /* m/s: grains that close in faster pass through each other; 0 without contacts */
 
   uint32_t charge;     /* the explosive grain, or UINT32_MAX */
   unsigned char *held; /* by grain: bit 1 x, 2 y, 4 rotation */
@@ -67,6 +68,7 @@ status dem_loading_start(struct dem_run *run, struct error *error);
 void dem_loading_drive(struct dem_run *run);             /* before a step */
 void dem_loading_record(struct dem_run *run);            /* after it */
 double dem_loading_slope_end(const struct dem_run *run); /* largest strain of the slopes that are results */
+double dem_loading_bend(const struct dem_run *run);      /* its change from their first half to the second, over it */
 void dem_loading_results(const struct dem_run *run, struct dem_results *results);
 
 /* report.c; `results`: struct dem_results */
@@ -77,7 +79,6 @@ status dem_report_finish(void *run, struct outcome *outcome, void *results, stru
 
 /* describe.c */
 char *dem_describe_scene(const void *inputs, bool all); /* struct dem_inputs */
-double dem_describe_threshold_energy(const struct dem_inputs *inputs, const struct dem_tessellation *tessellation);
 /* Closing speed above which two free grains pass through each other: no overlap stores that much energy, m/s. */
 double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);

@@ -10,15 +10,6 @@
 
 enum { MEASURED_UP_TO = 20000 }; /* grains; larger bodies are not built for a description */
 
-double dem_describe_threshold_energy(const struct dem_inputs *in, const struct dem_tessellation *t) {
-  double sum = 0; /* half (E S / l) (t l)^2 */
-  for (size_t p = 0; p < t->pair_count; p++) {
-    struct dem_point a = t->centroid[t->pair[p][0]], b = t->centroid[t->pair[p][1]];
-    sum += 0.5 * in->beam.young_modulus * t->side[p] * hypot(b.x - a.x, b.y - a.y);
-  }
-  return sum * in->threshold.strain * in->threshold.strain;
-}
-
 /* Square lattice along its rows: beams have modulus E; a contact pressed by d has the force Y d S/L_c with S = s and
  * L_c = 2 s/sqrt(pi), the diameter of the circle of area s^2, hence the modulus Y sqrt(pi)/2. */
 void dem_describe_sound_speeds(const struct dem_inputs *in, double *extension, double *compression) {
@@ -133,13 +124,15 @@ static size_t body(const struct dem_inputs *in, FILE *out) {
     return 0;
   }
   const size_t grains = run->tessellation->cell_count;
-  const double energy = energy_put_in(in), needed = dem_describe_threshold_energy(in, run->tessellation);
+  const double energy = energy_put_in(in), needed = run->threshold_energy;
   const double step = in->fidelity.time_step, limit = run->stable_time_step;
   fprintf(out, "  grains: %zu, beams: %zu (seed 1)\n", grains, run->tessellation->pair_count);
-  if (isnan(energy))
-    fprintf(out, "  every beam at the strain threshold would hold %.4g J/m\n", needed);
-  else
-    fprintf(out, "  energy put in: %.4g J/m; every beam at the strain threshold would hold %.4g J/m (ratio %.3g)\n",
+  if (isnan(energy) && !isnan(needed))
+    fprintf(out, "  every beam at its strain threshold would hold %.4g J/m\n", needed);
+  else if (!isnan(energy) && isnan(needed))
+    fprintf(out, "  energy put in: %.4g J/m\n", energy);
+  else if (!isnan(energy))
+    fprintf(out, "  energy put in: %.4g J/m; every beam at its strain threshold would hold %.4g J/m (ratio %.3g)\n",
             energy, needed, energy / needed);
   fprintf(out, "  time step: %.4g s, stability limit %.4g s (ratio %.2g)%s\n", step, limit, step / limit,
           step > limit ? ": UNSTABLE, will be refused" : "");

@@ -173,6 +173,11 @@ double dem_inputs_hole(const struct dem_inputs *in) {
   return field_is_off(in->body.wall) ? 0 : in->body.diameter / 2 - in->body.wall;
 }
 
+double dem_inputs_approach(const struct dem_inputs *in, double apart) {
+  const double across = in->collision.impact_parameter * in->body.diameter;
+  return sqrt(apart * apart - across * across);
+}
+
 bool dem_inputs_loaded(const struct dem_inputs *in) {
   return in->kind == DEM_UNIAXIAL || in->kind == DEM_COMPRESSION;
 }

@@ -83,6 +83,8 @@ status dem_inputs_check(const void *inputs, struct error *error); /* struct dem_
 bool dem_inputs_round(const struct dem_inputs *inputs);
 /* Radius of the hole in a round body, m; 0: none. */
 double dem_inputs_hole(const struct dem_inputs *inputs);
+/* Distance along the approach of the centres of two discs that are `apart`, m. */
+double dem_inputs_approach(const struct dem_inputs *inputs, double apart);
 /* Whether moving sides load the body (uniaxial, compression). */
 bool dem_inputs_loaded(const struct dem_inputs *inputs);
 /* Estimated number of grains of the body (or of both bodies), to plan memory and time. */

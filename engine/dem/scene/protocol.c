@@ -24,8 +24,7 @@ status dem_protocol_body(const struct dem_inputs *in, uint64_t seed, struct dem_
    * lies in the disc: with circles of 1.5 spacings more they cannot touch at the start. */
   *out = NULL;
   double across = in->collision.impact_parameter * in->body.diameter;
-  double clear = in->body.diameter + 3 * in->grain.spacing;
-  double along = sqrt(clear * clear - across * across);
+  double along = dem_inputs_approach(in, in->body.diameter + 3 * in->grain.spacing);
   struct dem_tessellation *first = NULL, *second = NULL;
   lattice.origin = (struct dem_point){-along / 2, -across / 2};
   status code = dem_tessellation_make(&lattice, &first, error);

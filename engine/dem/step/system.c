@@ -389,6 +389,17 @@ double dem_system_beam_strain(const struct dem_system *s, size_t beam) {
   return sqrt(dx * dx + dy * dy) / s->bond[slot / DEM_BLOCK].length[slot % DEM_BLOCK] - 1.0;
 }
 
+double dem_system_threshold_energy(const struct dem_system *s) {
+  double sum = 0;
+  for (size_t k = 0; k < s->pair_count; k++) {
+    const int32_t slot = s->pair_lane[k];
+    const struct dem_bond_block *block = &s->bond[slot / DEM_BLOCK];
+    if (s->alive[k]) /* the weight is 1/(l t_eps)^2 */
+      sum += 0.5 * block->axial[slot % DEM_BLOCK] / block->weight_strain[slot % DEM_BLOCK];
+  }
+  return s->in->threshold.breaking ? sum : (double)NAN;
+}
+
 size_t dem_system_breaks(const struct dem_system *s, const struct dem_break **log) {
   *log = s->log;
   return s->now.break_count;

@@ -49,6 +49,8 @@ void dem_system_force(const struct dem_system *system, uint32_t grain, double *f
 /* Beams: do they hold, and their present strain. */
 bool dem_system_beam_alive(const struct dem_system *system, size_t beam);
 double dem_system_beam_strain(const struct dem_system *system, size_t beam);
+/* Energy that would bring each present beam, unbent, to its own threshold, J/m. NaN without breaking. */
+double dem_system_threshold_energy(const struct dem_system *system);
 size_t dem_system_breaks(const struct dem_system *system, const struct dem_break **log);
 double dem_system_last_break(const struct dem_system *system); /* s; 0 before any */
 /* Largest speed so far, m/s, at which two grains without a beam between them came near each other on paths that meet:
