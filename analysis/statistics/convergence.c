@@ -113,9 +113,12 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
       resolve(level, &law->distance[place[l]]);
     else if (law->verdict == LIMIT_CONSTANT)
       level->resolution = level->n > 0 ? 0 : NOTHING;
-    else if (!level->reference)
+    else if (!level->reference) {
       level->resolution = fabs(level->bias) + level->bias_half_width;
-    else
+      for (size_t finer = l + 1; endless && finer < count; finer++) /* of these, one may equal the finest by chance */
+        if (!(fabs(level->bias - levels[finer].bias) <= level->resolution) && levels[finer].n > 0)
+          level->resolution = fabs(level->bias - levels[finer].bias);
+    } else
       level->resolution = endless ? coarser : 0;
     if (!level->reference && isfinite(level->bias_half_width))
       coarser = fabs(level->bias) + level->bias_half_width;

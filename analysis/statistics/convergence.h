@@ -155,11 +155,12 @@ struct convergence_limit_row { /* one knob, for one quantity: struct limit_law *
 extern const struct field_table convergence_limit_table;
 
 /* Fills distance, resolution and open of every level of a ladder, coarse to fine. With a limit, resolution is the
- * largest distance within the interval. Without one: |bias| and half width against the finest level; the finest level
- * itself takes those of the next coarser one. `choices`: levels are no numbers. There, and of numbers without a step
- * whose runs are equal seed by seed, the finest level counts as exact and has 0. When all runs of the ladder are equal,
- * no difference was seen: 0 and open. How many other runs may differ is told by the interval over seeds. Levels without
- * runs get NaN. law: of the levels with index place[l]; place[l] is at least LIMIT_LEVELS for a level without one. */
+ * largest distance within the interval. Without one: |bias| and half width against the finest level, and not less than
+ * the difference from any finer level; the finest level itself takes those of the next coarser one. `choices`: levels
+ * are no numbers. There, and of numbers without a step whose runs are equal seed by seed, the finest level counts as
+ * exact and has 0. When all runs of the ladder are equal, no difference was seen: 0 and open. How many other runs may
+ * differ is told by the interval over seeds. Levels without runs get NaN. law: of the levels with index place[l];
+ * place[l] is at least LIMIT_LEVELS for a level without one. */
 void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
                          bool choices);
 /* The same for the scene's own level when it was left out; else nothing. `own`: the law at its step, of limit_infer().
