@@ -113,8 +113,8 @@ struct engine_kind {
   /* Path of the result that such a scene is made for ("strength"). NULL, also as a function: OUTCOME_DEFAULT. */
   const char *(*headline)(const void *inputs);
   const char *single; /* what a fragment of count 1 is called ("of one element"); NULL: "of one grain or particle" */
-  /* What is modelled, memory, expected cost: text for `clast explain scene` and `plan`. `all`: also why, with sources.
-   * malloc'd. */
+  /* Text for `clast explain scene` and `plan`: the scene and its expected cost; below an empty line what is modelled,
+   * with its numbers. `all`: also why, with sources. malloc'd. */
   char *(*describe)(const void *inputs, bool all);
   const size_t
       *also; /* offsets of results that `simulate` shows beside the headline, of those that are 0 one of a section */

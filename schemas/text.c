@@ -253,6 +253,15 @@ bool text_ends_in_words(const char *text, const char *words, const char *separat
                     (text_ends_in(text, words) && strchr(separators, text[strlen(text) - strlen(words) - 1])));
 }
 
+void text_duration(double seconds, FILE *out) {
+  if (seconds < 100)
+    fprintf(out, "%.2g s", seconds);
+  else if (seconds < 6000)
+    fprintf(out, "%.2g minutes", seconds / 60);
+  else
+    fprintf(out, "%.2g hours", seconds / 3600);
+}
+
 size_t text_characters(const char *text, size_t bytes) {
   size_t count = 0;
   for (size_t i = 0; i < bytes && text[i]; i++)

@@ -48,6 +48,9 @@ bool text_append_word(char *text, size_t size, const char *word);
 enum { TEXT_WORD = 4200 };
 const char *text_word(const char *word, char shown[TEXT_WORD]);
 
+/* Prints a time that a person waits: "2.2 s", "3.6 minutes", "5 hours". */
+void text_duration(double seconds, FILE *out);
+
 /* Appends a number with so many decimals, or with five digits and an exponent ("1e+308") from a million on, where
  * people do not count digits. */
 void text_append_fixed(char *text, size_t size, double number, int decimals);

@@ -470,12 +470,19 @@ static status explain_scene(const struct scene *scene, enum table_format format,
   text_close_small(doubt, &doubts);
   if (!description)
     return status_fail(error, STATUS_MEMORY, "out of memory");
+  char *const rest = all ? NULL : strstr(description, "\n\n"); /* what a user asks first comes first */
+  if (rest)
+    rest[1] = '\0';
   printf("%s, engine %s\n", scene->name, scene->kind->name);
   text_wrap_lines(description, WIDTH, stdout);
   text_wrap_lines(doubts, WIDTH, stdout);
   campaign_tell_kept(scene, "", stdout);
   putchar('\n');
   TRY(print_inputs(scene, all, error));
+  if (rest) {
+    putchar('\n');
+    text_wrap_lines(rest + 2, WIDTH, stdout);
+  }
   if (scene->settings_count > 0)
     puts("\nnamed settings (campaign/accuracy.md):");
   list_settings(scene);

@@ -117,6 +117,12 @@ for words in "simulate disc-explosion" "explain disc-explosion" "plan any.yaml";
   expect 64 bash -c "'$clast' $words --set friction=0.1 --set friction=0.2"
   says "--set is given twice, as \"friction=0.1\" and \"friction=0.2\""
 done
+# a scene: what, cost and doubts come before its inputs, and what is modelled after them
+for scene in disc-explosion basalt-sphere; do
+  expect 0 "$clast" explain $scene
+  same "$(grep -oE ' of a core|^in doubt|^input|^  modelled|^  beams:' out | xargs)" \
+    "of a core in doubt input $([ $scene = basalt-sphere ] && echo modelled || echo beams:)" "order of an explanation"
+done
 # a wrong name in a section: what is in it
 expect 64 "$clast" simulate basalt-sphere --set target.shape=box --set target.side='3 cm'
 says "no 'target.side'; known in 'target' are shape, "; says "width, depth, height"
@@ -125,4 +131,4 @@ says "no 'target.side'; known in 'target' are shape, "; says "width, depth, heig
 for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
   expect 65 bash -c "ulimit -t 10; [ $sanitized -ne 0 ] || ulimit -v 20000000; exec '$clast' $words" # a sanitizer maps terabytes
 done
-done_after 60
+done_after 64

@@ -238,28 +238,20 @@ char *sph_describe_scene(const void *inputs, bool all) {
   FILE *out = text_open(&text);
   struct error error = {0};
   protocol(in, out);
+  if (sph_inputs_check(in, &error))
+    fprintf(out, "  cannot be run: %s\n", error.message);
+  const double particles = sph_derived_particles(in), steps = sph_describe_steps(in), speed = speed_expected(in);
+  fprintf(out, "  about %.3g steps of %.4g particles to stop.end_time%s: ", steps, particles,
+          sph_derived_cracks(&in->target) ? ", fewer when fracture ceases before" : "");
+  text_duration(steps * particles / speed, out);
+  fprintf(out, " of a core that does %.2g particle-steps a second\n\n", speed);
   modules(in, all, out);
   numbers(in, out);
   struct sph_plane_shock exact;
   if (in->kind == SPH_PISTON && !sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
     sph_plane_shock_describe(&exact, out);
-  if (sph_inputs_check(in, &error))
-    fprintf(out, "  cannot be run: %s\n", error.message);
-  double particles = sph_derived_particles(in);
   fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
           (double)sph_describe_memory(in) / 1e6);
-  const double steps = sph_describe_steps(in), speed = speed_expected(in), seconds = steps * particles / speed;
-  fprintf(out,
-          "  about %.3g steps of %.4g particles to stop.end_time%s: %.2g %s of a core that does %.2g particle-steps a "
-          "second\n",
-          steps, particles, sph_derived_cracks(&in->target) ? ", fewer when fracture ceases before" : "",
-          seconds < 100    ? seconds
-          : seconds < 6000 ? seconds / 60
-                           : seconds / 3600,
-          seconds < 100    ? "s"
-          : seconds < 6000 ? "minutes"
-                           : "hours",
-          speed);
   OWNED char *plain = text_close(out, &text);
   return plain ? text_people(plain) : NULL;
 }
