@@ -36,7 +36,7 @@ static void protocol(const struct dem_inputs *in, FILE *out) {
   case DEM_DISC_EXPLOSION:
     fprintf(out,
             "disc-explosion: a charge of %.4g J/m in the central grain, which it burns; its neighbours fly off\n"
-            "  perpendicular to the common sides, with speeds as side over mass (K99 section 3.3.1)\n",
+            "  perpendicular to the common sides, with a speed proportional to side over mass (K99 section 3.3.1)\n",
             in->charge.energy);
     break;
   case DEM_BLOCK_IMPACT:
@@ -165,7 +165,7 @@ char *dem_describe_scene(const void *inputs, bool all) {
   const double steps = dem_inputs_end_time(in) / in->fidelity.time_step;
   out = text_open(&text);
   protocol(in, out);
-  fprintf(out, "  at most %.3g steps of %.3g grains: ", steps, grains);
+  fprintf(out, "  at most %.3g steps of %.3g grains, ", steps, grains);
   text_duration(steps * grains / SPEED, out);
   fprintf(out, " of a core that does %.2g grain-steps a second\n\n%s", SPEED, details ? details : "");
   OWNED char *plain = text_close(out, &text);
