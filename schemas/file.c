@@ -138,6 +138,7 @@ char *file_name_in(const char *folder, const char *name) {
   if (name[0] == '/' || !folder || !*folder)
     return strdup(name);
   char *whole = NULL;
+  name += strncmp(name, "./", 2) == 0 ? 2 : 0;
   return asprintf(&whole, "%s/%s", folder, name) < 0 ? NULL : whole;
 }
 

@@ -5,10 +5,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "db/store/internal.h"
 #include "db/store/views.h"
 #include "engine/grow.h"
+#include "engine/scene.h"
+#include "schemas/file.h"
 #include "schemas/memory.h"
 #include "schemas/unit.h"
 
@@ -420,6 +423,28 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
   return ASK_RESOLUTION_NOT_STUDIED;
 }
 
+/* The command names its file, the last word, as it was called where the command ran. From another folder it is the file
+ * beside the store, with --store; none: no command. */
+static void call_from_here(const char *store_path, const char *file, char *command, size_t size) {
+  char word[TEXT_WORD];
+  const char *slash = strrchr(store_path, '/'), *name = text_word(file, word);
+  const size_t length = strlen(command), last = strlen(name);
+  if (!*command || scene_builtin_text(file) || strchr(file, '@') || access(file, F_OK) == 0)
+    return;
+  OWNED char *folder = slash ? memory_small_text(store_path) : NULL;
+  if (folder)
+    folder[slash - store_path + (slash == store_path)] = '\0';
+  OWNED char *whole = folder ? file_name_in(folder, file) : NULL;
+  const bool same = length >= last && strcmp(command + length - last, name) == 0;
+  if (!whole || !same || access(whole, F_OK) != 0 || strstr(command, "--store")) {
+    *command = '\0';
+    return;
+  }
+  command[length - last] = '\0';
+  text_append(command, size, "%s --store", text_word(whole, word));
+  text_append_word(command, size, store_path);
+}
+
 /* What `clast converge` takes so that its levels belong to these points: the file or the scene that computed them, with
  * the inputs and the store of that command line. A campaign is preferred to a study of one of its points. Several
  * files: no command. */
@@ -433,13 +458,16 @@ static status find_command(struct store *store, long long id, const char *quanti
       "'$.command') WHERE key = json_array_length(facts, '$.command') - 1 OR value GLOB '--set=*' OR value GLOB "
       "'--store=*' OR value IN ('-s', '--set', '--store') OR json_extract(facts, '$.command[' || max(key - 1, 0) || "
       "']') IN "
-      "('-s', '--set', '--store')) FROM session WHERE verb IN ('run', 'fit', 'find', 'converge') AND (%lld = 0 OR "
+      "('-s', '--set', '--store')), json_extract(facts, '$.command[#-1]') FROM session WHERE verb IN ('run', 'fit', "
+      "'find', 'converge') AND (%lld = 0 OR "
       "campaign_id IN "
       "(SELECT campaign_id FROM campaign_point WHERE point_id = %lld)) ORDER BY verb DESC LIMIT 2",
       id, id);
   char verb[16] = "", command[512] = "";
   while (answer_next(&found) && strcmp(answer_text(&found, 0), verb) >= 0) {
-    snprintf(command, sizeof command, "%s -Q %s", *verb ? "" : answer_text(&found, 1), quantity);
+    snprintf(command, sizeof command, "%s", *verb ? "" : answer_text(&found, 1));
+    call_from_here(store->path, answer_text(&found, 2), command, sizeof command);
+    text_append(command, sizeof command, " -Q %s", quantity);
     snprintf(verb, sizeof verb, "%s", answer_text(&found, 0));
   }
   if (*command > ' ' && strlen(command) < sizeof out->command)

@@ -118,6 +118,10 @@ sed '/^seeds/d' small.yaml >near.yaml
 echo 'accuracy: {quantity: largest_fraction, within: 0.01}' >>near.yaml
 expect 65 "$clast" plan near.yaml --set body.diameter='7 cm' --store other.db
 says "\`clast converge near.yaml --set 'body.diameter=7 cm' --store other.db --quantity largest_fraction\`"
+# In another folder the file is named from there.
+mkdir -p below
+(cd below && "$clast" stats ../small.db >../out 2>../err) || fail "stats from another folder"
+says "\`clast converge ../small.yaml --store ../small.db -Q largest_fraction\` measures it"
 eval "expect 0 '$clast' converge near.yaml --set 'body.diameter=7 cm' --store other.db --quantity largest_fraction --knob time_step --seeds 2 --within off --quiet"
 "$clast" plan near.yaml --set body.diameter='7 cm' --store other.db --no-trial >out 2>err || true
 same "$(tr '\n' ' ' <err | grep -o '`clast [^`]*`' | grep -cv "clast [a-z]* near.yaml --set 'body.diameter=7 cm' --store other.db " || true)" 0 "advice without its store"

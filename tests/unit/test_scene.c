@@ -262,7 +262,7 @@ static void files_and_names(void **state) {
   assert_int_equal(scene_load("no-such-scene.yaml", NULL, &scene, &error), STATUS_MISSING);
   assert_string_equal(error.message, "no-such-scene.yaml: there is no such file");
   assert_int_equal(scene_load("./no-such-scene", "here", &scene, &error), STATUS_MISSING);
-  assert_string_equal(error.message, "here/./no-such-scene: there is no such file");
+  assert_string_equal(error.message, "here/no-such-scene: there is no such file");
   char path[] = "test_scene_XXXXXX.yaml";
   int file = mkstemps(path, 5);
   assert_true(file >= 0);
