@@ -317,7 +317,7 @@ export async function showPlane() {
   const rows = (plane.shown = plane.rows.filter((row) => inSlice(row, at)));
   const known = rows.filter((row) => row.mean !== null);
   const untold = [...new Set(rows.map((row) => row.untold).filter(Boolean))].join(', or ');
-  const reason = untold ? ` -: not known to a whole number: ${untold}.` : '';
+  const reason = untold ? ` -: the exponent is too uncertain to print: ${untold}.` : '';
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
   const spec = !state.x ? {layer: []} : state.y ? planeSpec(rows, title) : lineSpec(known, title), texts = spec.layer.some(({encoding}) => encoding.text?.field === 'cell');

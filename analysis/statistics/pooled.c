@@ -255,7 +255,7 @@ int pooled_exponent_decimals(const struct pooled_exponent *exponent) {
 
 void pooled_exponent_tell(const char *reason, char *text, size_t size) {
   if (reason && !strstr(text, reason))
-    text_append(text, size, "%s%s", *text ? ", or " : "not known to a whole number: ", reason);
+    text_append(text, size, "%s%s", *text ? ", or " : "the exponent is too uncertain to print: ", reason);
 }
 
 status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,

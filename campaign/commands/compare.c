@@ -57,7 +57,7 @@ static void note_untold(struct untold *untold, const struct ask_pairs_row *row) 
   }
 }
 
-/* "beta_masses_from_5 -: not known to a whole number: fewer than 5 fragments: point 1 of a" */
+/* "beta_masses_from_5 -: the exponent is too uncertain to print: fewer than 5 fragments: point 1 of a" */
 static status tell_untold(const struct untold *untold, const char *quantity, struct error *error) {
   OWNED char *text = NULL;
   bool exponent;

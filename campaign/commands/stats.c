@@ -49,8 +49,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
   char changing[ASK_GROUP_POOLED] = "";
   TRY(table_answer(ask_group(store, options->by, quantity, &pooled, error), true, line->format, stdout));
   if (*pooled.inputs)
-    fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval%s\n", pooled.inputs,
-            pooled.single ? "; in a row of one point, its runs" : "");
+    fprintf(stderr, "clast: pooled over %s: mean, scatter and interval are over points, not over runs%s\n",
+            pooled.inputs, pooled.single ? "; in a row of one point, its runs" : "");
   TRY(ask_group_changing(store, options->by, changing, error));
   if (*changing)
     fprintf(stderr, "clast: from row to row the value of %s changes, too (--by)\n", changing);

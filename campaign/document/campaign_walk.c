@@ -141,11 +141,12 @@ static void print_kept(const struct doubts *doubts, const char *before, FILE *ou
   for (size_t k = 0; k < KEPT && doubts->kept[k].row; k++) {
     const struct kept *kept = &doubts->kept[k];
     char text[2 * LINE + 300] = "";
-    text_append(text, sizeof text,
-                "%s: the scene gives %s for its own material, and other materials keep it. Their own would be "
-                "%s. Give them what you mean, in `vary` as {linked: ..., values: [...]} (campaign/README.md, A rock of "
-                "your own)",
-                kept->row->path, kept->number, kept->others);
+    text_append(
+        text, sizeof text,
+        "%s: the scene gives %s for its own material, and other materials keep it. Their own value would be "
+        "%s. Write the value for each material in `vary`: {linked: ..., values: [...]} (campaign/README.md, A rock of "
+        "your own)",
+        kept->row->path, kept->number, kept->others);
     print_line(text, before, out);
   }
 }

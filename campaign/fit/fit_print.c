@@ -291,7 +291,8 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
     words_print(
         out, "",
         "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
-        "Along this line the data give %.0f %% of what is known, the priors the rest: the priors set its ends. State "
+        "Along this line %.0f %% of what is known comes from the data and the rest from the priors, which set its "
+        "ends. State "
         "the inputs together, or measure something that changes along it.",
         names, list_ends(fit, direction, ends), given);
     return;

@@ -174,7 +174,7 @@ static void tell_missing(const struct snapshots *s, double time) {
   if (written < s->count)
     fprintf(stderr,
             "clast: %lld of %lld snapshots written: they divide the longest time that the run may take, and it ended "
-            "before. `--set stop.end_time='%.4g s'`, just after its end, gives all (scenes that have this input)\n",
+            "before. `--set stop.end_time='%.4g s'`, just after its end, gives all\n",
             (long long)written, (long long)s->count, digit * (floor(time / digit) + 1));
 }
 

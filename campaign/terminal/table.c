@@ -40,7 +40,7 @@ enum role {
 static const char *const headings[][2] = {{"surplus", "after the rule's stop"},
                                           {"censored", "ended at end_time"},
                                           {"kept", "share of prior"},
-                                          {"not_told", "why not told"},
+                                          {"not_told", "reason for -"},
                                           {"of_means", "share of means"},
                                           {"of_runs", "share of runs"},
                                           {"frontier", "best"}};

@@ -180,7 +180,7 @@ silent err
 # A scene's own number of its rock: other rocks keep it, and the user is told theirs.
 printf 'name: kept\nscene: basalt-sphere\nset: {fidelity.particles: 1000, fidelity.projectile_spacing: 1}\nvary: {target.material: [basalt, granite]}\n' >kept.yaml
 expect 0 "$clast" plan kept.yaml --no-trial
-tr -s ' \n' ' ' <out | grep -q 'warning fragments.static_strength: the scene gives 1.7e7 Pa .* Their own would be granite: 1314510 Pa' || fail "granite with the strength of basalt"
+tr -s ' \n' ' ' <out | grep -q 'warning fragments.static_strength: the scene gives 1.7e7 Pa .* Their own value would be granite: 1314510 Pa' || fail "granite with the strength of basalt"
 expect 0 "$clast" explain basalt-sphere --set target.material=granite
 prints "fragments.static_strength: the scene gives 1.7e7 Pa"
 sed -i 's/granite\]/granite], fragments.static_strength: {linked: target.material, values: [17 MPa, 1.31 MPa]}/' kept.yaml

@@ -193,18 +193,18 @@ for column, row, value, doubtful, _, kind, weak in drawn:
     assert r['beta_masses'] is not None and (r['beta_masses_untold'] == 'an interval of ± 2 or wider') == ((r['beta_masses_hw95'] or 0) >= 2), r
 PY
 tr '\n' ' ' <beta.gp | sed "s/'\.\"[^ ]*\"\.'/ /g" >beta.txt
-grep -q '×: not known to a whole number: an interval of ± 2 or wider' beta.txt || fail "no reason in the caption of the map"
+grep -q '×: the exponent is too uncertain to print: an interval of ± 2 or wider' beta.txt || fail "no reason in the caption of the map"
 expect 0 "$clast" estimates small.db
 same "$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)" "$(awk 'NF == 7 && $6 == 1' beta.dat | wc -l)" "exponents that neither table nor map has"
-says "beta -: not known to a whole number: an interval of ± 2 or wider"
+says "beta -: the exponent is too uncertain to print: an interval of ± 2 or wider"
 withheld=$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)
 expect 0 "$clast" compare small.db small.db -Q beta_masses_from_2
 same "$(grep -c ' 3  *3  *[0-9]*  *-  *-  *-$' out)" "$withheld" "exponents that a comparison does not have either"
-says "clast: beta_masses_from_2 -: not known to a whole number: an interval of ± 2 or wider: point"
+says "clast: beta_masses_from_2 -: the exponent is too uncertain to print: an interval of ± 2 or wider: point"
 expect 0 "$clast" compare small.db small.db -Q beta
 says "\`-Q beta_masses_from_2\` takes lighter fragments, too"
 expect 64 "$clast" map small.db none.png -x strain -y angle -Q beta
-says "no point has an exponent to draw: not known to a whole number: fewer than 5 fragments"
+says "no point has an exponent to draw: the exponent is too uncertain to print: fewer than 5 fragments"
 # The command in a caption has the quantity, and its interval is none the narrower.
 for of in beta_masses_from_2 largest_fraction; do
   expect 0 "$clast" map many.db wide.png -x strain -y angle -Q $of --keep-script
@@ -249,9 +249,9 @@ expect 0 "$clast" plot scenes.db some.svg -x diameter --by scene --where 'charge
 says "intervals are over points, of one point over seeds (95 %"
 sed 's/<[^>]*>//g' some.svg | tr -s '[:space:]' ' ' | grep -q 'of a mark of one point: over seeds' || fail "a mark of one point"
 expect 0 "$clast" stats scenes.db --by diameter,scene --where 'charge_energy IS NULL OR charge_energy < 1500 OR body_diameter < 0.075'
-says "points are the units of mean, scatter and interval; in a row of one point, its runs"
+says "mean, scatter and interval are over points, not over runs; in a row of one point, its runs"
 expect 0 "$clast" stats scenes.db --by diameter,scene
-says "points are the units of mean, scatter and interval clast"
+says "mean, scatter and interval are over points, not over runs clast"
 tiny nine
 sed -i 's/, charge.energy: 2 kJ.m//; s/per_point: 3/per_point: 1/; s/threshold.strain: .*/threshold.strain: [2 %, 3 %, 4 %, 5 %, 6 %, 7 %, 8 %, 9 %, 10 %]/; s/^vary:/vary:\n  charge.energy: [1 kJ\/m, 2 kJ\/m]/' nine.yaml
 expect 0 "$clast" run nine.yaml --quiet

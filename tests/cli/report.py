@@ -296,7 +296,7 @@ def loads_again(browser):
     done("values that are withheld are told with their reason")
     browser.open(page, "#quantity=beta")
     wait_shown(browser, 1)
-    assert "not known to a whole number: fewer than 5 fragments" in text(browser, "#plane-chart"), text(browser, "#plane-chart")
+    assert "the exponent is too uncertain to print: fewer than 5 fragments" in text(browser, "#plane-chart"), text(browser, "#plane-chart")
     assert "no β: fewer than 5 fragments" in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
     done("an exponent that no table shows is not drawn, and the page says why")
     done("a page of a running campaign loads itself again, and keeps what was chosen")
