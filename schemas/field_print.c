@@ -192,8 +192,11 @@ static void explain_choices(const struct field *row, FILE *out) {
 
 /* " in m, above 0 m, or off"; of a result " in m, above 0 m, or no value" */
 static void explain_range(const struct field *row, bool result, FILE *out) {
-  char range[160];
-  const struct field shown = in_degrees(row);
+  char range[160], unit[64];
+  struct field shown = in_degrees(row);
+  text_unit(shown.unit, unit, sizeof unit);
+  if (*unit)
+    shown.unit = unit;
   field_describe_range(&shown, range, sizeof range);
   if (row->unit && strcmp(row->unit, "1"))
     fprintf(out, " in %s", shown.unit);

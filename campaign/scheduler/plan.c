@@ -510,7 +510,10 @@ static void print_design(const struct campaign *campaign, const struct plan *pla
     FILE *text = text_open(&values);
     design_axis_describe(campaign->axes, i, text);
     text_close_small(text, &values);
-    words_print(out, i ? "          " : "over      ", "%s: %s", campaign->axes[i].row->path, values);
+    char shown[2000] = "";
+    text_append(shown, sizeof shown, "%s", values);
+    text_powers(shown, sizeof shown);
+    words_print(out, i ? "          " : "over      ", "%s: %s", campaign->axes[i].row->path, shown);
   }
 }
 

@@ -52,6 +52,7 @@ expect 64 "$clast" run x.yaml -j
 expect 64 "$clast" simulate disc-explosion --set threshold.angle='60000 deg'
 says "at most 57295.8 deg"
 same "$("$clast" explain 2>/dev/null | awk '$3 == "threshold.angle" { print $4, $5, $6 }')" "deg 4 deg" "an angle for people"
+[[ "$("$clast" explain weibull.k | tr -s ' \n' ' ')" == *"real in m^-3, at least 1 and at most 1e200 m^-3"* ]] || fail "a unit as people write it"
 for word in weibull damage M_1/M ks knob seed projectile weibull.k; do expect 0 "$clast" explain "$word"; done
 prints "target.material.weibull.k"; prints "projectile.material.weibull.k: the same"
 expect 0 "$clast" explain basalt-sphere --set radius='2 cm' --set weibull.m=9 # of two bodies the one that cracks
