@@ -75,11 +75,14 @@ static double passing_after(const struct condition_run *r) {
 static double sloped(const struct condition_run *r) {
   const struct dem_run *run = run_of(r);
   const struct dem_results *results = r->results;
+  if (run->inputs.kind != DEM_COMPRESSION)
+    return NAN;
+  const double end = dem_loading_slope_end(run);
   uint64_t broken = 0;
   for (size_t k = 0; k < run->state.frame.samples; k++)
-    if (fabs(run->sample[k].strain) <= dem_loading_slope_end(run))
+    if (fabs(run->sample[k].strain) <= end)
       broken = run->sample[k].broken;
-  return run->inputs.kind == DEM_COMPRESSION ? (double)broken / (double)results->beams : (double)NAN;
+  return (double)broken / (double)results->beams;
 }
 
 /* Energy that contacts gave without having taken it: a lower bound with the printed law, where what contacts still
@@ -320,7 +323,9 @@ const struct condition dem_conditions[] = {
               .reason = "discs that have parted have 0", .remedy = "give a longer stop.least_time and stop.end_time",
               .after = pressing),
     CONDITION(
-        "load", .number = "the number of times that a wave crosses the block while its sides move at full speed",
+        "load",
+        .number = "the number of times that a wave crosses the block while its sides move at full speed, up to the "
+                  "first break (uniaxial) or to failure (compression),",
         .bound = 3, .least = true,
         .doubt = "the load is not quasi-static: inertia of the block is measured, not its stiffness",
         .reason =
@@ -328,8 +333,8 @@ const struct condition dem_conditions[] = {
             "within 3.5 %, Poisson's ratio within 0.05; a square lattice is off by 24 % at 0.7 and by any "
             "factor below. The number counts 1.5 times after a ramp of two crossings or more: within 1.3 % "
             "and 0.01 then",
-        .remedy = "lower loading.rate, or raise loading.strain_end", .results = "young_modulus poisson_ratio",
-        .before = crossings, .after = crossings_made),
+        .remedy = "lower loading.rate; where no beam breaks, raise loading.strain_end, else threshold.strain",
+        .results = "young_modulus poisson_ratio", .before = crossings, .after = crossings_made),
     CONDITION(
         "rapid", .number = "the number of times that a wave crosses the block until it fails", .bound = 10,
         .least = true, .doubt = "the block fails before waves have spread the load: it seems stronger",
@@ -365,7 +370,7 @@ const struct condition dem_conditions[] = {
     CONDITION("elastic", .fact = "no beam of the block broke",
               .doubt = "the largest stress is that of the last strain or of a wave, and no strength",
               .reason = "a strength is a failure",
-              .remedy = "set threshold.breaking: true, or raise loading.strain_end",
+              .remedy = "set threshold.breaking: true, and raise loading.strain_end until beams break",
               .results = "strength failure_strain", .withheld = true, .absent = true, .after = whole),
     {0},
 };
