@@ -125,11 +125,13 @@ struct parse {
   char letters[2 * LIMITS_OPTIONS + 4];
 };
 
-/* An option given twice. One of several names takes those of both; of any other, one would be lost. */
+/* An option, or a NAME=VALUE of a list, given twice. One of several names takes those of both; of any other, one would
+ * be lost. */
 static status take_again(const struct option_row *row, const char **slot, const char *text, struct error *error) {
   static char both[4][1000]; /* the options of a command line live as long as the program */
   static size_t used;
-  const bool names = strcmp(row->argument, "NAMES") == 0 || strcmp(row->argument, "AXES") == 0;
+  const bool names = row->kind == OPTION_TEXT &&
+                     (strcmp(row->argument, "NAMES") == 0 || strcmp(row->argument, "AXES") == 0);
   if (!names || used == sizeof both / sizeof both[0] || strlen(*slot) + strlen(text) + 2 > sizeof both[0])
     return status_fail(error, STATUS_USAGE, "--%s is given twice, as \"%.64s\" and \"%.64s\": leave one of them out",
                        row->name, *slot, text);

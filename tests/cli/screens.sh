@@ -53,6 +53,8 @@ says "--quantity is given twice, as \"dust_fraction\" and \"largest_fraction\": 
 expect 64 "$clast" estimates small.db --point 1 --point 2
 says "--point is given twice, as 1 and 2"
 expect 0 "$clast" estimates small.db --point 1 --point 1
+expect 64 "$clast" converge uniaxial --knob grains=1cm --knob grains=2cm -Q young_modulus --store twice.db
+says "--knob is given twice, as \"grains=1cm\" and \"grains=2cm\": leave one of them out"
 
 # The marks of a search are those of stats, and the table says what its rows are.
 cat >search.yaml <<'YAML'
@@ -209,4 +211,4 @@ same "$(number levels.db "select count(*) from convergence where n = 18")" 4 "le
 expect 0 "$clast" explain withheld
 prints '"-" in tables'
 
-done_after 53
+done_after 54
