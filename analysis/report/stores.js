@@ -38,7 +38,7 @@ export function answer(store, sql, parameters, most) {
 export const has = (store, table) => store.tables.has(table);
 
 // The exponent of each point; where tables and pictures leave it out, no value but the reason, `untold`.
-export const exponents = (store) => newest(ask(store, questions.exponents(has(store, 'untold')))).map((row) => (row.untold === null ? row : {...row, mean: null, hw95: null}));
+export const exponents = (store) => newest(ask(store, questions.exponents(has(store, 'untold'), store.viewed))).map((row) => (row.untold === null ? row : {...row, mean: null, hw95: null}));
 
 // The newest version of results of each point; rows come in the order of versions.
 export function newest(rows) {
@@ -75,6 +75,7 @@ function describe(store) {
   store.fixed = read('fixed_axis', questions.fixedAxes); // what other parts of its file vary
   store.pointColumns = columns('points');
   store.runColumns = new Set(columns('runs'));
+  store.viewed = columns('estimates').includes('untold'); // not in an older store
   store.doubtful = store.runColumns.has('doubtful') ? 'doubtful' : store.runColumns.has('warnings') ? "warnings <> ''" : '0'; // of older stores
   store.points = newest(ask(store, questions.points([...store.axes, ...store.fixed].map((axis) => axis.column_name),
     store.pointColumns.includes('excluded') ? ', excluded' : ''))); // an older store has no such column

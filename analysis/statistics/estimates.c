@@ -49,8 +49,7 @@ static const struct field rows_of_table[] = {
         standard_error, "1", fit.standard_error, 0,
         "Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval "
         "over seeds. Of a point: from leaving out one of its runs after another (jackknife), and as of one run where "
-        "this "
-        "gives no interval.",
+        "this gives no interval.",
         NULL),
     REAL(hw95, "1", half_width, 0,
          "Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off "
