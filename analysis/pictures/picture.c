@@ -434,7 +434,7 @@ static void write_bins(struct chart *chart, const struct pooled_form *form, size
       continue;
     double low = bin->value - bin->half_width; /* NaN: one run */
     if (low <= 0)
-      low = bin->value / 1e3; /* a bar down to the frame's lower edge or beyond */
+      low = bin->value * 1e-30; /* beyond the frame: no cap is drawn at an end that has no place on the axis */
     const double middle = form->cumulative ? bin->lower : sqrt(bin->lower) * sqrt(bin->upper);
     chart_row(chart, 5, (double[]){middle, bin->value, low, bin->value + bin->half_width, !(bin->lower < complete)});
   }

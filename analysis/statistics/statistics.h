@@ -103,8 +103,9 @@ double sample_student_of(double freedom, double level);
  *     var(mean) = var(y_p) / P + C / (P (P - 1)),  C = sum over pairs p != q and their common seeds of
  *                 r_ps r_qs / sqrt(n_p (n_p - 1) n_q (n_q - 1)),
  * which is unbiased for points and seeds that are drawn independently, each with effects of its own (random effects,
- * crossed). C below 0 counts as 0. Degrees of freedom are Satterthwaite's (1946, doi 10.2307/3002019), from both
- * scatters. Points of one run tell nothing of the seeds: C leaves them out. */
+ * crossed), if all points have the same seeds; where they share some of them only, it is too small (6 points of 3 seeds
+ * out of 6: by 18 %). C below 0 counts as 0. Degrees of freedom are Satterthwaite's (1946, doi 10.2307/3002019), from
+ * both scatters. Points of one run tell nothing of the seeds: C leaves them out. */
 struct sample_crossed {
   double units;     /* degrees of freedom + 1. The number of points when C is 0 */
   double deviation; /* sqrt(units var(mean)): the half width is sample_student_of(units - 1) deviation / sqrt(units) */

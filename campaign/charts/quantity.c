@@ -346,8 +346,8 @@ void quantity_tell_resolution(struct store *store, const char *name, const struc
   uncertainty_resolution(&resolution, text);
   fprintf(stderr, "clast: %s: intervals are over %s (95 %%%s); %s\n", name,
           !pooled || !*pooled->inputs ? "seeds"
-          : pooled->single            ? "points, of one point over seeds"
-                                      : "points",
+          : pooled->single            ? "points and seeds, of one point over seeds"
+                                      : "points and seeds",
           views_range(name).share ? "" : "; none where all are equal to 14 digits", text);
 }
 

@@ -49,7 +49,9 @@ static status ask(struct store *store, const struct command_line *line, struct e
   char changing[ASK_GROUP_POOLED] = "";
   TRY(table_answer(ask_group(store, options->by, quantity, &pooled, error), true, line->format, stdout));
   if (*pooled.inputs)
-    fprintf(stderr, "clast: pooled over %s: mean, scatter and interval are over points, not over runs%s\n",
+    fprintf(stderr,
+            "clast: pooled over %s: mean and scatter are over points, not over runs; the interval is over points and "
+            "seeds%s\n",
             pooled.inputs, pooled.single ? "; in a row of one point, its runs" : "");
   TRY(ask_group_changing(store, options->by, changing, error));
   if (*changing)

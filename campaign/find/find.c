@@ -218,11 +218,10 @@ static status read_request(const struct find_request *request, const char *path,
     snprintf(campaign->store, sizeof campaign->store, "%s", request->store);
   TRY(find_input(find, request->input, error));
   TRY(find_bracket(find, request, error));
-  char words[1000];
-  option_words(path, &request->set, request->store, words, sizeof words);
+  option_words(path, &request->set, request->store, find->words, sizeof find->words);
   if (!launch_other_rank())
-    TRY(accuracy_settle(campaign, words, campaign->store, request->launch.quiet ? ACCURACY_SILENT : ACCURACY_NOTE, NULL,
-                        error));
+    TRY(accuracy_settle(campaign, find->words, campaign->store, request->launch.quiet ? ACCURACY_SILENT : ACCURACY_NOTE,
+                        NULL, error));
   TRY(find_base(find, &request->set, error));
   TRY(find_level(find, request, error));
   find->relative = strchr(request->within, '%');

@@ -25,6 +25,7 @@ struct find {
   struct design_axis axis;
   struct scene *base; /* owned: the scene of every run but for the input */
   char reference[2 * FIELD_TEXT_SIZE];
+  char words[1000]; /* the campaign's file and the options that choose its scene and store, for a command */
   const struct field *input;
   struct ask_specimens_quantity quantity;
   double level, share; /* SI; share: NaN for the mean */

@@ -251,13 +251,19 @@ static status print_rows(const struct find *find, enum table_format format, stru
 static status read_resolution(const struct find *find, struct store *store, const struct field_value *place,
                               const char *column, struct ask_resolution *resolution, struct error *error) {
   int64_t point = 0;
+  char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE];
   SCENE scene = campaign_point_scene_from(find->base, &find->limits, place, error);
   if (!scene)
     return STATUS_CONTENT;
   TRY(store_point_find(store, scene, &point, error));
   TRY(ask_resolution(point ? store : NULL, point, column, resolution, error));
-  campaign_write_study(scene, find->reference, column, find->limits.store, resolution->command,
-                       sizeof resolution->command);
+  field_print(find->input, place, value, sizeof value);
+  snprintf(set, sizeof set, "%s=%s", find->input->path, value);
+  const size_t size = sizeof resolution->command;
+  resolution->command[0] = '\0';
+  if (!text_append(resolution->command, size, "%s --set", find->words) ||
+      !text_append_word(resolution->command, size, set) || !text_append(resolution->command, size, " -Q %s", column))
+    resolution->command[0] = '\0';
   return STATUS_OK;
 }
 

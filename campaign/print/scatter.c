@@ -41,7 +41,8 @@ static void print_runs_needed(const struct printing *printing, const struct samp
   const double all = (double)printing->pool->data.runs.count, values = (double)mean->n;
   const double raw = values + (double)printing->pool->doubts.withheld;
   row(printing, "runs needed", runs ? ceil((double)runs * all / values) : (double)NAN, NAN, NAN);
-  row(printing, "runs needed, seeds.until", by_rule ? ceil((double)by_rule * all / raw) : (double)NAN, NAN, NAN);
+  row(printing, "runs needed, seeds.until",
+      by_rule ? SAMPLE_BATCH * ceil((double)by_rule * all / raw / SAMPLE_BATCH) : (double)NAN, NAN, NAN);
 }
 
 static void print_scatter(const struct printing *printing, struct scatter *s) {

@@ -106,7 +106,7 @@ static status read_store(struct serve *serve, const struct job *job, const struc
       values[r] = outcome_is_usable(run.state) && !run.withheld ? run.value : (double)NAN;
     if (doubts && outcome_is_usable(run.state)) {
       (void)ask_doubts_run(doubts, job->scene->kind->name, run.warnings, result->row->path, 1);
-      ask_doubts_absent(doubts, result->row->path, isnan(run.value) && !run.withheld);
+      ask_doubts_absent(doubts, result->row->path, isnan(run.value) && !run.withheld, 1);
     }
     if (there)
       there[r] = true;

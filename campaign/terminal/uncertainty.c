@@ -218,11 +218,12 @@ void uncertainty_mark(const struct ask_doubts *doubts, char text[UNCERTAINTY_TEX
 }
 
 void uncertainty_doubts(const struct ask_doubts *doubts, FILE *out) {
-  for (size_t k = 0; k < sizeof doubts->absent / sizeof *doubts->absent && *doubts->absent[k].name; k++)
-    fprintf(out,
-            "clast: %s: %" PRId64 " of %" PRId64
-            " runs have no value and are not in its numbers (`clast explain %s`)\n",
-            doubts->absent[k].name, doubts->absent[k].runs, doubts->runs, doubts->absent[k].name);
+  for (size_t k = 0; k < sizeof doubts->absent / sizeof *doubts->absent; k++)
+    if (doubts->absent[k].runs > 0)
+      fprintf(out,
+              "clast: %s: %" PRId64 " of %" PRId64
+              " runs have no value and are not in its numbers (`clast explain %s`)\n",
+              doubts->absent[k].name, doubts->absent[k].runs, doubts->absent[k].of, doubts->absent[k].name);
   for (size_t k = 0; k < doubts->count; k++) {
     const struct ask_doubt *doubt = &doubts->word[k];
     fprintf(out, "clast: %s, %" PRId64 " of %" PRId64 " runs: %s: ",

@@ -110,7 +110,7 @@ struct ask_doubts {
   struct ask_absent { /* runs that lack a result though nothing withholds it, such as the time of the first
                          break of a body that did not break; "": no more */
     char name[64];
-    int64_t runs;
+    int64_t runs, of; /* of: those of engines that have the result */
   } absent[4];
   size_t count;
   struct ask_doubt {
@@ -135,8 +135,8 @@ status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, c
 /* How many runs of the store count and are in doubt, and how many only studies and searches have. */
 status ask_doubts_count(struct store *store, double *doubtful, double *of_studies, struct error *error);
 
-/* Counts runs that lack a result though nothing withholds it. */
-void ask_doubts_absent(struct ask_doubts *doubts, const char *name, int64_t runs);
+/* Counts `runs` that lack a result though nothing withholds it, of `of`. */
+void ask_doubts_absent(struct ask_doubts *doubts, const char *name, int64_t runs, int64_t of);
 /* Adds `runs` runs of these words, and returns what the words say of the results. */
 enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine, const char *words,
                                    const char *results, int64_t runs);

@@ -21,14 +21,15 @@ static void add_word(struct ask_doubts *doubts, const char *word, const struct c
 
 enum { ABSENT = sizeof((struct ask_doubts *)0)->absent / sizeof(struct ask_absent) };
 
-void ask_doubts_absent(struct ask_doubts *doubts, const char *name, int64_t runs) {
+void ask_doubts_absent(struct ask_doubts *doubts, const char *name, int64_t runs, int64_t of) {
   size_t k = 0;
   while (k < ABSENT && *doubts->absent[k].name && strcmp(doubts->absent[k].name, name) != 0)
     k++;
-  if (k == ABSENT || runs <= 0)
+  if (k == ABSENT || of <= 0)
     return;
   snprintf(doubts->absent[k].name, sizeof doubts->absent[k].name, "%.63s", name);
   doubts->absent[k].runs += runs;
+  doubts->absent[k].of += of;
 }
 
 status ask_doubts_count(struct store *store, double *doubtful, double *of_studies, struct error *error) {
@@ -58,7 +59,7 @@ void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others) 
   doubts->excluded += others->excluded;
   doubts->chosen = others->chosen;
   for (size_t k = 0; k < ABSENT; k++)
-    ask_doubts_absent(doubts, others->absent[k].name, others->absent[k].runs);
+    ask_doubts_absent(doubts, others->absent[k].name, others->absent[k].runs, others->absent[k].of);
   for (size_t k = 0; k < others->count; k++)
     add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs);
 }
@@ -113,7 +114,7 @@ status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, c
     for (size_t i = 0; i < count; i++)
       if (views_has_result(kind, column[i]) &&
           condition_mark(kind ? kind->conditions : NULL, words, column[i]) != CONDITION_WITHHELD)
-        ask_doubts_absent(doubts, column[i], answer_integer(&answer, 4 + i));
+        ask_doubts_absent(doubts, column[i], answer_integer(&answer, 4 + i), runs);
   }
   doubts->chosen = store->chosen;
   return answer_end(&answer);

@@ -345,10 +345,10 @@ static status take_first_names(struct answer *answer, char list[ASK_GROUP_POOLED
 }
 
 /* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
- * all others. The first NAMED are named. means: of means over points (sample_crossed()), which lack the seeds of points
- * of one run alone. */
-static status find_pooled(struct store *store, const struct names *axes, bool means, struct ask_group_pooled *pooled,
-                          struct error *error) {
+ * all others. The first NAMED are named. means: the quantities of means over points (sample_crossed()), which lack the
+ * seeds of points of one value alone; NULL: of anything else. */
+static status find_pooled(struct store *store, const struct names *axes, const struct names *means,
+                          struct ask_group_pooled *pooled, struct error *error) {
   OWNED char *grouped = grouped_sql(axes);
   ANSWER answer = answer_to(
       store, error,
@@ -364,13 +364,19 @@ static status find_pooled(struct store *store, const struct names *axes, bool me
       "grouped h WHERE h.grp = g.grp)",
       grouped);
   TRY(take_first_names(&answer, pooled->inputs));
-  ANSWER kinds =
-      answer_to(store, error,
-                "%s SELECT total(points = 1), total(shared) FROM (SELECT count(*) AS points, count(seed) > "
-                "count(DISTINCT seed) AND (%d OR min(n) = 1) AS shared FROM (SELECT grp, n, (SELECT seed FROM run r "
-                "WHERE r.point_id = grouped.point_id AND replicate = 0 LIMIT 1) AS seed FROM grouped) GROUP "
-                "BY grp)",
-                grouped, !means);
+  sqlite3_str *lone = sqlite3_str_new(NULL); /* has the point one value of a quantity? */
+  for (size_t i = 0; means && i < means->count; i++)
+    sqlite3_str_appendf(lone, "%scount(\"%w\") = 1", i ? " OR " : "", means->name[i]);
+  if (!means)
+    sqlite3_str_appendall(lone, "1");
+  char *is_lone = sqlite3_str_finish(lone);
+  ANSWER kinds = answer_to(store, error,
+                           "%s SELECT total(points = 1), total(shared) FROM (SELECT count(*) AS points, count(seed) > "
+                           "count(DISTINCT seed) AND max(lone) AS shared FROM (SELECT grp, (SELECT seed FROM run r "
+                           "WHERE r.point_id = grouped.point_id AND replicate = 0 LIMIT 1) AS seed, (SELECT %s FROM "
+                           "runs r WHERE r.point_id = grouped.point_id AND counts) AS lone FROM grouped) GROUP BY grp)",
+                           grouped, is_lone ? is_lone : "1");
+  sqlite3_free(is_lone);
   if (answer_next(&kinds)) {
     pooled->single = answer_real(&kinds, 0) > 0;
     pooled->lacks_seeds = answer_real(&kinds, 1) > 0;
@@ -417,7 +423,7 @@ status ask_group_pooled(struct store *store, const char *by, struct ask_group_po
   if (!by)
     return STATUS_OK;
   TRY(resolve(store, by, "Axis", axes_sql, &axes, error));
-  return find_pooled(store, &axes, false, pooled, error);
+  return find_pooled(store, &axes, NULL, pooled, error);
 }
 
 static status find_names(struct store *store, const char *by, const char *quantities, struct names *axes,
@@ -426,7 +432,10 @@ static status find_names(struct store *store, const char *by, const char *quanti
   TRY(resolve(store, by, "Axis", axes_sql, axes, error));
   if (quantities)
     TRY(resolve(store, quantities, "Quantity", quantities_sql, results, error));
-  return find_pooled(store, axes, true, pooled, error);
+  const char *names[VIEWS_STATISTICS_MAIN];
+  for (size_t i = 0; !quantities && i < views_statistics_main(names); i++)
+    snprintf(results->name[results->count++], NAME, "%s", names[i]);
+  return find_pooled(store, axes, results, pooled, error);
 }
 
 struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,
@@ -435,12 +444,6 @@ struct answer ask_group(struct store *store, const char *by, const char *quantit
   const status code = find_names(store, by, quantities, &axes, &results, pooled, error);
   if (code)
     return answer_failed(code, error);
-  if (!quantities) {
-    const char *names[VIEWS_STATISTICS_MAIN];
-    results.count = views_statistics_main(names);
-    for (size_t i = 0; i < results.count; i++)
-      snprintf(results.name[i], NAME, "%s", names[i]);
-  }
   OWNED char *sql = group_sql(&axes, &results);
   return answer_to(store, error, "%s", sql);
 }

@@ -328,7 +328,8 @@ value = lambda name: float(rows[name])
 n = int(sys.argv[1])
 assert value("runs") == n
 sd = value("standard deviation")
-assert value("runs needed") / (40 / n) > (1.9 * sd / 0.03) ** 2, (rows, sd)
+assert 1 < value("runs needed") / (40 / n) / (1.96 * sd / 0.03) ** 2 < 1.1, (rows, sd)
+assert value("runs needed, seeds.until") % 10 == 0 and value("runs needed, seeds.until") > value("runs needed"), rows
 PY
 ok "values that runs lack"
 done_after 137

@@ -42,7 +42,7 @@ at = re.search(r'at threshold.strain = ([0-9.]+) %', ' '.join(open('out').read()
 said = ' '.join(open('err').read().split())
 assert f'largest_fraction at threshold.strain = {at} %: resolution: not studied' in said, (at, said)
 study = re.search(r'`clast converge ([^`]*)`', said).group(1)
-assert f"threshold.strain={at} %" in study and "body.diameter=8 cm" in study, study
+assert study.startswith("disc.yaml ") and f"threshold.strain={at} %" in study, study # the file has the rest, such as own rocks
 PY
 ok "the study advised is at the crossing"
 runs=$(number disc.db "select count(*) from run")

@@ -246,12 +246,12 @@ expect 0 "$clast" plot scenes.db one.svg -x energy --by diameter
 says "largest_fraction: intervals are over seeds (95 %"
 grep -q 'intervals over seeds;' one.svg && ! grep -q speed one.svg || fail "what no mark pools"
 expect 0 "$clast" plot scenes.db some.svg -x diameter --by scene --where 'charge_energy IS NULL OR charge_energy < 1500 OR body_diameter < 0.075'
-says "intervals are over points, of one point over seeds (95 %"
+says "intervals are over points and seeds, of one point over seeds (95 %"
 sed 's/<[^>]*>//g' some.svg | tr -s '[:space:]' ' ' | grep -q 'of a mark of one point: over seeds' || fail "a mark of one point"
 expect 0 "$clast" stats scenes.db --by diameter,scene --where 'charge_energy IS NULL OR charge_energy < 1500 OR body_diameter < 0.075'
-says "mean, scatter and interval are over points, not over runs; in a row of one point, its runs"
+says "mean and scatter are over points, not over runs; the interval is over points and seeds; in a row of one point, its runs"
 expect 0 "$clast" stats scenes.db --by diameter,scene
-says "mean, scatter and interval are over points, not over runs clast"
+says "mean and scatter are over points, not over runs; the interval is over points and seeds clast"
 tiny nine
 sed -i 's/, charge.energy: 2 kJ.m//; s/per_point: 3/per_point: 1/; s/threshold.strain: .*/threshold.strain: [2 %, 3 %, 4 %, 5 %, 6 %, 7 %, 8 %, 9 %, 10 %]/; s/^vary:/vary:\n  charge.energy: [1 kJ\/m, 2 kJ\/m]/' nine.yaml
 expect 0 "$clast" run nine.yaml --quiet
