@@ -54,6 +54,12 @@ static void resolution_names_the_campaign(void **state) {
   OK(ask_resolution(store, id, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
   assert_true(isnan(found.half_width));
+  assert_string_equal(found.command, ""); /* its file is not here */
+  FILE *campaign = fopen("c.yaml", "w");
+  assert_non_null(campaign);
+  fclose(campaign);
+  OK(ask_resolution(store, id, "largest_fraction", &found, &error));
+  unlink("c.yaml");
   assert_string_equal(found.command, "-s 'a=8 cm' c.yaml -Q largest_fraction");
   OK(ask_resolution(store, id + 1, "largest_fraction", &found, &error));
   assert_string_equal(found.command, "");
