@@ -94,7 +94,7 @@ enum { SAMPLE_NARROW_RUNS = 40, SAMPLE_EDGE_RUNS = 20 };
  * NaN for n < 2 or a level outside (0, 1). */
 double sample_student(size_t n, double level);
 
-/* The same with any degrees of freedom above 0, also broken ones. */
+/* The same for any degrees of freedom above 0, whole numbers or not. */
 double sample_student_of(double freedom, double level);
 
 /* The mean of points whose runs share seeds. A seed that acts at all points alike moves all their means together: no

@@ -62,7 +62,7 @@ void picture_draw_time(double seconds, char text[32]) {
   snprintf(text, 32, "%.4g %s", seconds, unit[k]);
 }
 
-/* "disc_000003: seed 1, 812 µs", "end (impact): seed 1, 812 µs". The scene and the number of a snapshot are the file's
+/* "disc_000003: seed 1, 812 us", "end (impact): seed 1, 812 us". The scene and the number of a snapshot are the file's
  * name; the fields of a stored run are named by a hash, and the store knows the scene. Of a movie: the name of its
  * series; of a sheet, also no time. */
 static void name_run(const char *fields, const struct movie *movie, const char *engine, long long seed, double time,

@@ -320,8 +320,7 @@ status quantity_tell_idle(struct store *store, struct error *error) {
     words_print(stderr, "",
                 "clast: no effect in these runs: %s (runs that differ in it alone have the same results, to the last "
                 "bit). Where points are pooled over it and others, copies count as points of their own, and the "
-                "interval is too "
-                "narrow: --where chooses one value",
+                "interval is too narrow: --where chooses one value",
                 idle);
   return STATUS_OK;
 }
@@ -552,7 +551,12 @@ static status find_place(struct plot *plot, const char *text, double *x, struct 
 /* Words of the axis have the order of the points, which is that of the campaign. */
 static status order_places(struct store *store, struct plot *plot, struct error *error) {
   const char *input = plot->quantity.column[0];
+  bool words = false;
   double x;
+  for (size_t i = 0; i < plot->quantity.count; i++)
+    words |= isnan(plot->quantity.row[i].input[0]) && *plot->quantity.row[i].text[0];
+  if (!words)
+    return STATUS_OK;
   ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, true, 1, &input, error);
   for (struct ask_points_row point; ask_points_next(&points, &point);)
     for (size_t i = 0; point.inputs[0].kind == QUERY_TEXT && i < plot->quantity.count; i++) {

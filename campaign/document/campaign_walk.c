@@ -201,10 +201,11 @@ static bool is_new(struct twins *twins, const struct campaign_walk *walk, const 
 
 static void print_twins(const struct twins *twins, const char *before, FILE *out) {
   char text[LINE + 200];
+  const size_t all = twins->seen + twins->again;
   if (twins->count == 0)
     return;
-  snprintf(text, sizeof text, "%zu of %zu points have the values of an earlier one, and are one point with it: %s",
-           twins->count, twins->seen + twins->again, twins->pairs);
+  snprintf(text, sizeof text, "%zu of %s%zu points have the values of an earlier one, and are one point with it: %s",
+           twins->count, all < LOOKED_AT ? "" : "the first ", all, twins->pairs);
   print_line(text, before, out);
 }
 

@@ -292,8 +292,7 @@ static void tell_open_direction(const struct fit *fit, size_t direction, FILE *o
         out, "",
         "RIDGE: these data cannot tell %s apart. What was measured hardly changes while they change together: %s. "
         "Along this line %.0f %% of what is known comes from the data and the rest from the priors, which set its "
-        "ends. State "
-        "the inputs together, or measure something that changes along it.",
+        "ends. State the inputs together, or measure something that changes along it.",
         names, list_ends(fit, direction, ends), given);
     return;
   }

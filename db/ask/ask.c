@@ -652,7 +652,9 @@ status ask_points_label(struct store *store, struct store *units, int64_t point_
     const char *path = answer_text(&answer, 0), *word = strrchr(path, '.');
     struct ask_column column = {.factor = 1};
     snprintf(column.unit, sizeof column.unit, "%s", answer_text(&answer, 2));
-    ANSWER other = answer_to(units, error, "SELECT written_unit FROM main.axis WHERE path = %Q", path);
+    ANSWER other = {.code = STATUS_OK};
+    if (units != store)
+      other = answer_to(units, error, "SELECT written_unit FROM main.axis WHERE path = %Q", path);
     const struct answer *written = units != store && answer_next(&other) ? &other : &answer;
     const size_t place = written == &other ? 0 : 3;
     if (answer_value(written, place).kind == QUERY_TEXT)

@@ -240,8 +240,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
     fprintf(out,
             ",\n  count(iif(counts, \"%1$s\", NULL)) AS r%2$zu, mean(iif(counts, \"%1$s\", NULL)) AS p%2$zu, "
             "stdev(iif(counts, \"%1$s\", NULL)) AS o%2$zu, seeds(seed, iif(counts, \"%1$s\", NULL)) AS s%2$zu, "
-            "count(iif(counts, w%2$zu, NULL)) AS b%2$zu, "
-            "words(iif(counts, w%2$zu, NULL)) AS w%2$zu",
+            "count(iif(counts, w%2$zu, NULL)) AS b%2$zu, words(iif(counts, w%2$zu, NULL)) AS w%2$zu",
             q, i);
   }
   fputs("\nFROM (SELECT * FROM (SELECT ", out); /* only the needed columns, because the rows are sorted */
@@ -327,7 +326,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
 static char *grouped_sql(const struct names *axes) {
   char *sql = NULL;
   FILE *out = text_open(&sql);
-  fputs("WITH grouped AS (SELECT point_id, n, dense_rank() OVER (ORDER BY ", out);
+  fputs("WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY ", out);
   write_names(out, axes);
   fputs("engine, results_version) AS grp FROM points WHERE n > 0)", out);
   return text_close_small(out, &sql);

@@ -442,8 +442,8 @@ static status find_asked(struct reading *reading, struct store *store, struct er
   char name[ASK_GROUP_NAME];
   ANSWER names = answer_to(store, error, "SELECT DISTINCT plan ->> '$.quantity' FROM campaign WHERE json_valid(plan)");
   while (answer_next(&names))
-    for (size_t i = 0; i < reading->count; i++)
-      if (ask_group_quantity(store, answer_text(&names, 0), name, NULL) == STATUS_OK)
+    if (ask_group_quantity(store, answer_text(&names, 0), name, NULL) == STATUS_OK)
+      for (size_t i = 0; i < reading->count; i++)
         reading->column[i].asked |= strcmp(reading->column[i].name, name) == 0;
   return answer_end(&names);
 }
