@@ -41,19 +41,19 @@ static const size_t also[] = {offsetof(struct sph_results, crater.depth),
 static const struct knob knobs[] = {
     KNOB("particles", RESOLUTION,
          .inputs = {{"fidelity.particles", 1},
+                    {"fidelity.spacings_per_radius", 1.0 / 3},
                     {"fidelity.fine_spacing", -1.0 / 3, .given = true},
                     {"fidelity.fine_radius", 0}},
          KNOB_THIRDS, .step_power = -1.0 / 3, .tell_unkept = sph_derived_tell_unkept,
-         .meaning = "number of particles of the target; the projectile's spacing follows. Where spacings_per_radius "
-                    "decides the spacing at the point of impact, this and the projectile's stay, if there are enough "
-                    "particles"),
-    KNOB("impact_zone", RESOLUTION,
+         .meaning = "number of particles of the target; all spacings follow: that of the projectile, and in a graded "
+                    "body that of the zone that it hits"),
+    KNOB("impact_zone", PART,
          .inputs = {{"fidelity.spacings_per_radius", 1},
                     {"fidelity.fine_spacing", -1, .given = true},
                     {"fidelity.fine_radius", 0}},
          .factors = {0.5, 0.71, 1, 1.41}, .step_power = -1, .tell_unkept = sph_derived_tell_unkept,
          .meaning = "particle spacings in the projectile's radius where it hits and in the projectile; the number of "
-                    "particles stays, so that it bounds the finest level"),
+                    "particles stays, so that the rest of the body gets coarser"),
     KNOB("points", RESOLUTION, .inputs = {{"fidelity.points", 1}}, KNOB_HALVES, .step_power = -1,
          .meaning = "spacings along a plate"),
     KNOB("projectile", RESOLUTION, .inputs = {{"fidelity.projectile_spacing", 1}}, .factors = {2, 1.41, 1, 0.71},

@@ -10,6 +10,7 @@
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
 #include "engine/dem/run/run.h"
+#include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 #include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
@@ -99,23 +100,26 @@ static bool is_near(double value, double expected) {
   return fabs(value / expected - 1) < 1e-14;
 }
 
-/* A graded body is fine at the point of impact. The number of particles leaves this zone as it is, and the knob of the
- * zone keeps its size: else the largest error of an impact is in no study. */
+/* A graded body is fine at the point of impact. With more particles all of its spacings get smaller by one factor, so
+ * that one law describes the ladder. With the zone alone, the rest gets coarser. The zone keeps its size. */
 static void graded_bodies_keep_their_zone(void **state) {
   (void)state;
   struct scene *scene = scene_of("solid-ice");
   const struct sph_inputs *own = scene->inputs;
   struct ladder ladder;
   char *notes = NULL;
-  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "4000,12000,36000", &ladder, &notes, &error),
+  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "4000,12000,96000", &ladder, &notes, &error),
                    STATUS_OK);
-  assert_int_equal(ladder.count, 2); /* 4000 are too few for five spacings in the radius */
-  assert_non_null(strstr(notes, "fidelity.particles = 4000 is left out: fidelity.coarsest 4 allows the 5 of "));
+  assert_int_equal(ladder.count, 2); /* 4000 are too few for 3.47 spacings in the radius */
+  assert_non_null(strstr(notes, "fidelity.particles = 4000 is left out: fidelity.coarsest 4 allows the 3.47 of "));
   for (size_t l = 0; l < 2; l++) {
     const struct sph_inputs *in = ladder.level[l].scene->inputs;
-    assert_true(is_near(in->fidelity.fine_spacing, own->fidelity.fine_spacing));
+    assert_true(is_near(in->fidelity.fine_spacing, own->fidelity.fine_spacing / (l == 0 ? 1 : 2)));
     assert_true(is_near(in->fidelity.fine_radius, own->fidelity.fine_radius));
   }
+  const double far[] = {sph_derived_coarsest_spacing(ladder.level[0].scene->inputs),
+                        sph_derived_coarsest_spacing(ladder.level[1].scene->inputs)};
+  assert_true(far[0] > 1.9 * far[1] && far[0] < 2.1 * far[1]);
   ladder_clear(&ladder);
   free(notes);
 
