@@ -427,6 +427,14 @@ static void cut(double least, double most, struct limit_range *range) {
   range->high = fmin(fmax(range->high, least), most);
 }
 
+/* A mean is no farther from the limit than the limit can be. Where the range of the result cuts the interval of the
+ * limit, that interval bounds the distance, too: the distance rests on laws whose limit is impossible as well. */
+static void cut_distance(const struct limit_ladder *ladder, const struct limit_range *limit, double mean,
+                         struct limit_range *distance) {
+  const bool at_end = limit->low <= ladder->least || limit->high >= ladder->most;
+  cut(mean - (at_end ? limit->high : ladder->most), mean - (at_end ? limit->low : ladder->least), distance);
+}
+
 /* ---- the law ---- */
 
 static double best_tail(const struct work *work, size_t dropped) {
@@ -536,8 +544,7 @@ static void find_ranges(const struct limit_ladder *ladder, const struct work *wo
   for (size_t l = 0; l < data->levels; l++) {
     const struct quantity distance = {.step = data->step[l], .level = &l, .dropped = law->dropped};
     law->distance[l] = range_of(work, &distance, rejected);
-    /* no farther than the limit can be */
-    cut(data->mean[l] - ladder->most, data->mean[l] - ladder->least, &law->distance[l]);
+    cut_distance(ladder, &law->limit, data->mean[l], &law->distance[l]);
   }
   for (size_t i = 0; i < count; i++) {
     const double step = points[i].step, own = 1 / (double)data->seeds;
@@ -552,7 +559,7 @@ static void find_ranges(const struct limit_ladder *ladder, const struct work *wo
     points[i].distance = range_of(work, &distance, rejected);
     cut(ladder->least, ladder->most, &points[i].mean);
     cut(ladder->least, ladder->most, &points[i].sample);
-    cut(points[i].mean.value - ladder->most, points[i].mean.value - ladder->least, &points[i].distance);
+    cut_distance(ladder, &law->limit, points[i].mean.value, &points[i].distance);
   }
 }
 

@@ -189,6 +189,9 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
   note_own(finding, knob, row);
+  char *knobs = finding->accuracy->knobs;
+  if (knob && knob->group == KNOB_RESOLUTION && isfinite(row->resolution) && !condition_has(knobs, row->knob))
+    text_append(knobs, sizeof finding->accuracy->knobs, "%s%s", *knobs ? ", " : "", row->knob);
   if (row->base && row->n > finding->own_n) {
     finding->own_mean = row->mean;
     finding->own_n = row->n;
@@ -983,9 +986,10 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
              option->total < fabs(option->mean) ? " (%.2g %% of its mean %.3g%s)" : " (%.0f %% of its mean %.3g%s)",
              100 * option->total / fabs(option->mean), option->mean, unit);
   words_print(out, before,
-              "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s and the rest seeds, with %s and %" PRId64 " seeds a point%s",
-              campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more, chosen,
-              option->seeds, cost);
+              "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s (%s) and the rest seeds, with %s and %" PRId64
+              " seeds a point%s",
+              campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more,
+              accuracy->knobs, chosen, option->seeds, cost);
   if (option->deviation >= 0 && !(option->deviation > SAMPLE_ROUNDING * fabs(option->mean)))
     words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: more of them tell no more",
                 option->n);

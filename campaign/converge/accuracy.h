@@ -47,6 +47,7 @@ struct accuracy {
   double open_value;                      /* the finest level of `open` with runs; 0: none */
   char marked[512];   /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
   char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
+  char knobs[128];    /* what the errors hold: "grains, time_step" */
   char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
   char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
   char studied[300];  /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */

@@ -125,9 +125,9 @@ status study_print_knobs(const struct engine_kind *kind, enum table_format forma
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
  * programs the rows of convergence_table. */
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
-/* Of the first scene and quantity. Draws the levels of the first knob that has a step, with law, limit and band, over
- * the step; without such a knob the levels over the processor time of a run, one curve per knob. `of_errors`: the error
- * of each level over processor time, and the frontier. */
+/* Of the first scene, which the title names by its point, and quantity. Draws the levels of the first knob that has a
+ * step, with law, limit and band, over the step; without such a knob the levels over the processor time of a run, one
+ * curve per knob. `of_errors`: the error of each level over processor time, and the frontier. */
 status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error);
 
 /* ---- study_request.c ---- */

@@ -310,12 +310,12 @@ static void print_seen(const struct convergence_limit_row *limit, const struct s
               study_show_error(found->rows[l].resolution, found->rows[l].open, text));
 }
 
-/* The levels without a mean, each with its reason: not run in the time given, or all results withheld or missing. */
+/* The levels without a mean, each with its reason: no time, not asked for, or all results withheld or missing. */
 static status print_missing(const struct printing *printing, const struct study_ladder *ladder, size_t quantity,
                             const struct study_found *found, FILE *out, struct error *error) {
   struct ask_doubts here, all = {0};
   char ran[KNOB_LEVELS * 200] = "", words[256] = "";
-  const char *before = "; without";
+  char late[sizeof ran] = "";
   for (size_t l = 0; l < found->count; l++) {
     const struct convergence_row *row = &found->rows[l];
     const bool by_law = row->base && !row->open && found->limit.verdict == LIMIT_SEEN;
@@ -328,9 +328,12 @@ static status print_missing(const struct printing *printing, const struct study_
       ask_doubts_add(&all, &here);
       continue;
     }
-    fprintf(out, "%s %s%s", before, row->setting, own);
-    before = ",";
+    if (ladder->levels.level[l].unasked)
+      fprintf(out, "; without %s%s", row->setting, own);
+    else
+      text_append(late, sizeof late, "%s %s%s", *late ? "," : "; there was no time for", row->setting, own);
   }
+  fputs(late, out);
   for (size_t k = 0; k < all.count; k++)
     if (all.word[k].row && all.word[k].row->withheld)
       text_append(words, sizeof words, "%s%s", *words ? ", " : "", all.word[k].word);
@@ -677,10 +680,12 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   for (size_t i = 0; stepped == knobs && i < knobs && drawing->count < CURVES; i++)
     add_curve(drawing, drawing->found[i].limit.knob, i, 1, of_errors, false);
 
-  char title[800], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16], x[200] = "processor time of a run (s)", unit[64] = "";
+  char title[1200], point[512], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16], x[200] = "processor time of a run (s)",
+                                                                              unit[64] = "";
   charts_label(study->quantity[0].name, quantity);
   snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
-  snprintf(title, sizeof title, "%s: %s%s", study->ladder[0].base->name, y,
+  design_axis_show_point(study->varied_count, study->varied, study->ladder[0].base->inputs, point, sizeof point);
+  snprintf(title, sizeof title, "%s%s%s: %s%s", study->ladder[0].base->name, *point ? ", " : "", point, y,
            stepped < knobs ? " and its limit" : " over the cost of a run");
   if (study->quantity[0].row)
     TRY(charts_axis(store, study->quantity[0].column, quantity, error)); /* with its unit */

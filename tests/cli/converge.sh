@@ -258,6 +258,7 @@ PY
 ok "the plan takes the least error in the time"
 expect 0 "$clast" plan timed.yaml --within 5s --no-trial
 prints "In half of the time"
+tr -s ' \n' ' ' <out | grep -q 'resolution [^ ]* (time_step) and the rest seeds' || fail "the knobs of the error: $(cat out)"
 same "$(tr -s ' \n' ' ' <out | sed 's/ of processor time allowed//' | grep -o 's of processor time' | wc -l)" 1 "processor times of one plan"
 python - <<'PY'
 import re
@@ -461,8 +462,12 @@ says "too short for"; one_error
 # The scene's own level takes minutes, the coarser ones 20 ms: they are studied, and the law tells its error.
 expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --set grain.spacing='0.06 cm' --seconds 20 \
   --knob grains=3cm,2.2cm,1.6cm,0.06cm --max-seeds 8 --store slow.db -j 1
-prints "without 0.0006 *"
+tr "\n" " " <out | grep -qF "there was no time for 0.0006 *, whose error" || fail "why the own level is missing: $(cat out)"
 same "$(number slow.db "select min(n) from convergence where n > 0")" 8 "seeds of the coarser levels"
+# A level that does not fit into the time has one reason, also where the others end for another one.
+expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --seconds 20 \
+  --knob grains=3cm,2.2cm,1.6cm,0.06cm --seeds 8 --within off --store slow.db -j 1
+tr '\n' ' ' <out | grep -q 'ended: one round was asked for; without [0-9.]* \*.*; there was no time for 0.0006' || fail "why a level is missing: $(cat out)"
 
 # A setting finer than any level has the law's error on every screen.
 cat >finer.yaml <<'YAML'
@@ -474,7 +479,7 @@ store: finer.db
 YAML
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 32 -j 2
 expect 0 "$clast" run finer.yaml -j 2
-says "grains = 0.003795 m"
+says "grains = 0.003795"
 error=$(number finer.db "select round(resolution, 6) from convergence where reference")
 same "$(number finer.db "select round(half_width / sqrt(0.5), 6) from resolution join point_input using (point_id)
   where path = 'grain.spacing' and value = 0.003795 and verdict = 'known'")" "$error" "error of a finer setting"
@@ -533,6 +538,9 @@ expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
 prints "disc-explosion, strain 3 %, quantity largest_fraction"
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --csv
 same "$(cut -d, -f1 out | sort -u | tr '\n' ' ')" "0.01 0.03 threshold_strain " "inputs of the levels"
+expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --picture each.svg
+grep -q 'disc-explosion, strain 1 %: ' each.svg || fail "the title does not name the point"
+says "a picture is of the first point, which its title names"
 # --set of a varied input: one point is left, not the same one twice. It tells how much there is to do.
 expect 0 "$clast" converge each.yaml --set threshold.strain='3 %' --knob time_step --seeds 3 --within off --store one.db
 same "$(grep -c 'quantity largest_fraction' out)" 1 "points that differ"
@@ -649,4 +657,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 167
+done_after 169

@@ -270,6 +270,25 @@ static void changes_that_fall(void **state) {
   }
 }
 
+/* A limit that its range cuts at 0, and the distance to it, are one: no mean is farther from it than its interval says
+ * (a share of 0.249 was up to 0.53 from a limit of 0 to 0.138). Shares of dust, 8 seeds. */
+static void a_distance_ends_where_the_limit_does(void **state) {
+  (void)state;
+  double values[3][MOST_SEEDS] = {{0.827, 0.759, 0.824, 0.746, 0.724, 0.868, 0.677, 0.972},
+                                  {0.373, 0.595, 0.726, 0.462, 0.724, 0.507, 0.541, 0.774},
+                                  {0.313, 0.169, 0.283, 0.162, 0.24, 0.3, 0.241, 0.283}};
+  struct limit_law law;
+  struct limit_ladder ladder = ladder_of(3, 8, values);
+  for (size_t l = 0; l < 3; l++)
+    ladder.step[l] = (double[]){0.02, 0.0141, 0.01}[l];
+  assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
+  assert_true(law.verdict == LIMIT_SEEN && law.limit.low == 0 && law.limit.high < 0.2);
+  for (size_t l = 0; l < 3; l++) {
+    const double mean = sample_summarise(8, values[l], 0.95).mean;
+    assert_true(law.distance[l].low >= mean - law.limit.high - 1e-12 && law.distance[l].high <= mean + 1e-12);
+  }
+}
+
 static void ranges_and_equal_runs(void **state) {
   (void)state;
   double values[3][MOST_SEEDS];
@@ -305,6 +324,7 @@ static void ranges_and_equal_runs(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(exact_levels), cmocka_unit_test(changes_that_fall),
+                                     cmocka_unit_test(a_distance_ends_where_the_limit_does),
                                      cmocka_unit_test(ranges_and_equal_runs), cmocka_unit_test(ladders)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
