@@ -456,7 +456,7 @@ static void write_fit(struct chart *chart, const struct pooled_form *form, const
   chart_block_end(chart);
 }
 
-/* Extends the ranges of both axes to the bins. */
+/* Extends the ranges of both axes to the bins and to the upper ends of their bars. */
 static void cover(double x[2], double y[2], size_t count, const struct pooled_bin *bins) {
   for (size_t b = 0; b < count; b++) {
     if (!(bins[b].value > 0) || !(bins[b].lower > 0))
@@ -464,6 +464,7 @@ static void cover(double x[2], double y[2], size_t count, const struct pooled_bi
     extend(x, bins[b].lower);
     extend(x, bins[b].upper);
     extend(y, bins[b].value);
+    extend(y, bins[b].value + bins[b].half_width); /* NaN: one run */
   }
 }
 

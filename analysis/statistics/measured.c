@@ -314,6 +314,7 @@ enum amount { SINGLE, COUNT, COUNT_ABOVE, RETAINED, RETAINED_ABOVE, PASSING };
 
 struct row {
   double mass, amount; /* the mass comes first: sample_ascending() sorts by it */
+  int64_t line;        /* of the file */
 };
 
 struct reading {
@@ -584,7 +585,7 @@ static status read_amount(struct reading *r, const char *text, double *amount, s
 }
 
 static status take_row(struct reading *r, struct error *error) {
-  struct row row = {.amount = 1};
+  struct row row = {.amount = 1, .line = r->csv.line};
   struct csv_cell *place = &r->csv.cells[r->place], *amount = r->kind == SINGLE ? NULL : &r->csv.cells[r->amount];
   if (!csv_number(&r->csv, place) || (amount && !csv_number(&r->csv, amount)))
     return status_fail(error, STATUS_CONTENT, "%s:%lld: %s", r->path, (long long)r->csv.line, r->csv.wrong);
@@ -644,9 +645,10 @@ static status take_rows(struct reading *r, struct error *error) {
   for (size_t i = r->count; i-- > 0;) {
     if (cumulative && r->rows[i].amount < above)
       return status_fail(error, STATUS_CONTENT,
-                         "%s: the cumulative %s at %g kg is %s that of a larger mass; it counts from this mass %s",
-                         r->path, out->weighed ? "mass" : "number", r->rows[i].mass,
-                         r->kind == PASSING ? "above" : "below", r->kind == PASSING ? "downwards" : "upwards");
+                         "%s:%lld: '%s' is %s here than on line %lld, which has a larger %s; it counts from its %s %s",
+                         r->path, (long long)r->rows[i].line, r->amount_name, r->kind == PASSING ? "larger" : "smaller",
+                         (long long)r->rows[i + 1].line, r->by_size ? "size" : "mass", r->by_size ? "size" : "mass",
+                         r->kind == PASSING ? "downwards" : "upwards");
     above = cumulative ? r->rows[i].amount : above + r->rows[i].amount;
     out->mass[i] = r->rows[i].mass;
     out->above[i] = above;

@@ -32,6 +32,14 @@ same "$(tr '\n' ' ' <err | sed 's/.*complete from \([^ ]*\) .*/\1/')" "$("$clast
 expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2 --quiet
 expect 0 "$clast" spectrum many.db --point 4 --picture many.png --keep-script
 grep -q 'the largest of each run left out' many.gp && tr '\n' ' ' <many.gp | sed "s/'\.\"[^ ]*\"\.'/ /g" | grep -q 'Lines leave out the largest fragment of each run' || fail "no word on the largest fragments"
+# Bars end within the frame, also wide ones of few runs.
+expect 0 "$clast" spectrum small.db --point 4 --picture few.png --keep-script
+python - <<'PY' || fail "bars that the frame cuts"
+import re
+high = [float(l.split()[3]) for l in open("few.dat") if l.strip() and l[0] != "#" and len(l.split()) == 5]
+frame = float(re.search(r"y_high = ([0-9.e+-]+)", open("few.gp").read())[1])
+assert len(high) > 4 and max(h for h in high if h == h) < frame, (high, frame)
+PY
 expect 0 "$clast" spectrum many.db --point 4 --cumulative --picture sums.png --keep-script
 python - <<'PY' || fail "the cumulative line is beside its marks"
 marks, line = ([[float(x) for x in l.split()] for l in block.splitlines() if l and l[0] not in "#N"] for block in open("sums.dat").read().split("\n\n\n")[:2])
@@ -211,4 +219,4 @@ same "$(number levels.db "select count(*) from convergence where n = 18")" 4 "le
 expect 0 "$clast" explain withheld
 prints '"-" in tables'
 
-done_after 54
+done_after 55
