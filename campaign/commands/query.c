@@ -43,8 +43,10 @@ static status tell_marks(struct store *store, const char *sql, struct error *err
         "them out of the views\n",
         of_studies);
   if (doubtful > 0 && !strcasestr(sql, OUTCOME_NAME(warnings)) && !strcasestr(sql, "doubtful"))
-    fprintf(stderr, "clast: %.0f runs of this store are in doubt: see columns doubtful and warnings of the view runs\n",
-            doubtful);
+    fprintf(
+        stderr,
+        "clast: %.0f runs of this store have a result in doubt: see columns doubtful and warnings of the view runs\n",
+        doubtful);
   return STATUS_OK;
 }
 

@@ -51,6 +51,8 @@ struct campaign {
   char until_quantity[FIELD_TEXT_SIZE];
   double until_half_width; /* half width of the mean's confidence interval, in the quantity's SI unit */
   bool until_of_value;     /* until_half_width is a share of the mean: given in per cent */
+  double until_scale;      /* the half width as written, over until_half_width */
+  char until_unit[24];     /* behind it: " MPa", " %"; "": none */
   double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
   char accuracy_quantity[FIELD_TEXT_SIZE];

@@ -208,6 +208,7 @@ static status change(struct document *document, const struct campaign_changes *c
   }
   if (changes->seeds == 0)
     return STATUS_OK;
+  document_drop(document_key(document_root(document), "seeds"), (const char *const[]){"until", "max", NULL});
   snprintf(number, sizeof number, "%" PRId64, changes->seeds);
   return document_change_put(document, (const char *const[]){"seeds", "per_point"}, number, origin, error);
 }

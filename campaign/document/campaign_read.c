@@ -220,8 +220,7 @@ static void check_accuracy(document_node *root, struct campaign *campaign) {
   campaign->accuracy_of_value = is_of_value(accuracy, "within");
   if (seeds || key_of(document_key(root, "seeds"), "until"))
     document_report(accuracy, "accuracy",
-                    "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "
-                    "out");
+                    "accuracy finds the number of seeds; leave seeds.per_point (also as --seeds) and seeds.until out");
 }
 
 static bool is_share_of(const struct campaign *campaign, const char *name) {
@@ -247,6 +246,16 @@ static const char *main_quantity(const struct campaign *campaign) {
     if (asked[i][0] && campaign_quantity(campaign->scene->kind, asked[i], &of_outcome, &error))
       return asked[i];
   return scene_headline(campaign->scene);
+}
+
+/* For people, widths of the rule are in the unit that the user wrote. */
+static void note_unit(document_node *width, struct campaign *campaign) {
+  const char *text = width ? document_scalar(width) : NULL;
+  char *unit = NULL;
+  const double written = text ? strtod(text, &unit) : 0;
+  campaign->until_scale = written > 0 && campaign->until_half_width > 0 ? written / campaign->until_half_width : 1;
+  unit += unit ? strspn(unit, " ") : 0;
+  snprintf(campaign->until_unit, sizeof campaign->until_unit, unit && *unit ? " %s" : "", unit);
 }
 
 /* A width that is not per cent has the unit of the quantity. A text without a number or a unit is told already. */
@@ -295,6 +304,7 @@ static void check_quantities(document_node *root, bool stored, struct campaign *
   if (until)
     check_quantity(until, "seeds.until.quantity", campaign->until_quantity, campaign);
   document_node *half_width = key_of(key_of(key_of(root, "seeds"), "until"), "half_width");
+  note_unit(half_width, campaign);
   if (!stored) { /* older programs took a width without a unit */
     check_width(half_width, "seeds.until.half_width", campaign->until_quantity, campaign);
     check_width(key_of(document_key(root, "accuracy"), "within"), "accuracy.within", campaign->accuracy_quantity,

@@ -166,30 +166,27 @@ static void print_summary(const struct driver_summary *summary, const char *stor
 /* Points that ended at seeds.max before seeds.until was met. The rule asks for more runs than a narrow interval needs.
  */
 static void warn_unmet(const struct campaign *campaign, const struct driver_summary *summary) {
-  char asked[FIELD_TEXT_SIZE], unit[CAMPAIGN_UNIT] = " %", width[UNCERTAINTY_TEXT + 96] = "is not known",
-                               runs[64] = "how many is not known";
+  const double asked = campaign->until_half_width * campaign->until_scale;
+  char width[UNCERTAINTY_TEXT + 96] = "is not known", runs[64] = "how many is not known";
   const uint64_t unmet = summary->points_cap_reached;
-  const double one = campaign->until_of_value ? 100 / fabs(summary->widest_mean) : 1;
+  const double reached = summary->widest_half_width * campaign->until_scale /
+                         (campaign->until_of_value ? fabs(summary->widest_mean) : 1);
   if (unmet == 0)
     return;
-  if (!campaign->until_of_value)
-    campaign_unit(campaign, campaign->until_quantity, unit);
-  snprintf(asked, sizeof asked, "%g%s%s", campaign->until_half_width * (campaign->until_of_value ? 100 : 1), unit,
-           campaign->until_of_value ? " of the mean" : "");
   if (isfinite(summary->widest_half_width))
-    snprintf(width, sizeof width, "is ± %.2g%s%s", summary->widest_half_width * one, unit,
-             summary->widest_half_width * one > campaign->until_half_width * (campaign->until_of_value ? 100 : 1)
+    snprintf(width, sizeof width, "is ± %.2g%s%s", reached, campaign->until_unit,
+             reached > asked
                  ? ""
                  : ": narrow enough, but the rule takes more runs before it trusts one (clast explain seeds.until)");
   if (summary->widest_runs)
     snprintf(runs, sizeof runs, "about %zu", summary->widest_runs);
   words_print(stderr, "",
               "clast: warning: %" PRIu64 " of %" PRIu64 " points ended at seeds.max (%" PRId64
-              " runs) before seeds.until was met (%s to ± %s). Point %" PRId64
+              " runs) before seeds.until was met (%s to ± %g%s%s). Point %" PRId64
               " needs the most runs, %s; its interval %s. Raise seeds.max, or ask for less, and the same command goes "
               "on",
-              unmet, summary->points, campaign->maximum, campaign->until_quantity, asked, summary->widest_point, runs,
-              width);
+              unmet, summary->points, campaign->maximum, campaign->until_quantity, asked, campaign->until_unit,
+              campaign->until_of_value ? " of the mean" : "", summary->widest_point, runs, width);
 }
 
 /* Means of the campaign's main quantity. */

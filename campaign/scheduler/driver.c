@@ -597,7 +597,8 @@ static void tick(void *context, int running, bool last) {
   const int64_t least = (int64_t)points * campaign_replicates_least(driver->campaign), /* as `plan` tells it */
       total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign);
   const struct point *widest = last ? NULL : widest_reached(driver);
-  char unit[CAMPAIGN_UNIT];
+  char quantity[FIELD_TEXT_SIZE]; /* as in tables */
+  field_column_name(driver->row->path, quantity, sizeof quantity);
   struct progress_state state = {
       .done = summary->runs_done + summary->runs_reused - summary->runs_surplus,
       .failed = summary->runs_failed,
@@ -607,13 +608,12 @@ static void tick(void *context, int running, bool last) {
       .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
       /* The table has the mean of the runs that count; those of a study differ in their settings. */
-      .quantity = last || driver->in_series ? NULL : driver->row->path,
+      .quantity = last || driver->in_series ? NULL : quantity,
       .mean = mean,
-      .reached = widest ? widest->reached : 0,
+      .reached = widest ? widest->reached * driver->campaign->until_scale : 0,
       .point = widest && points > 1 ? widest->id : 0,
-      .unit = campaign_unit(driver->campaign, driver->campaign->until_quantity, unit),
-      .asked = driver->campaign->until_half_width,
-      .of_mean = driver->campaign->until_of_value,
+      .unit = driver->campaign->until_unit,
+      .asked = driver->campaign->until_half_width * driver->campaign->until_scale,
       .doubtful = summary->runs_doubtful > 0,
       .part = driver->in_series,
   };

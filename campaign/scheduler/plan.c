@@ -541,7 +541,7 @@ static void print_times(const struct plan *plan, int slots, FILE *out) {
 }
 
 static void print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
-  char a[64], b[64], ended[64] = "", until[2 * FIELD_TEXT_SIZE] = "", unit[CAMPAIGN_UNIT];
+  char a[64], b[64], ended[64] = "", until[2 * FIELD_TEXT_SIZE] = "";
   print_design(campaign, plan, out);
   campaign_warn(campaign, "warning   ", out);
 
@@ -552,11 +552,10 @@ static void print(const struct campaign *campaign, const struct plan *plan, int 
     snprintf(until, sizeof until, " (every point has met seeds.until or has seeds.max runs)");
   else if (plan->runs_most != plan->runs_least)
     snprintf(until, sizeof until,
-             " to %llu (%s to ±%g%s; at least %lld seeds a point, as few can be alike by chance%s)",
+             " to %llu (%s to ±%g%s%s; at least %lld seeds a point, as few can be alike by chance%s)",
              (unsigned long long)plan->runs_most, campaign->until_quantity,
-             campaign->until_half_width * (campaign->until_of_value ? 100 : 1),
-             campaign->until_of_value ? " % of its mean" : campaign_unit(campaign, campaign->until_quantity, unit),
-             (long long)campaign_replicates_least(campaign), ended);
+             campaign->until_half_width * campaign->until_scale, campaign->until_unit,
+             campaign->until_of_value ? " of its mean" : "", (long long)campaign_replicates_least(campaign), ended);
   snprintf(a, sizeof a, plan->store_exists ? "%llu of them in the store" : "no store yet",
            (unsigned long long)plan->runs_there);
   words_print(out, "runs      ", "%llu%s, %s", (unsigned long long)plan->runs_least, until, a);

@@ -79,13 +79,13 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
     uncertainty_seeds(&state->mean, both);
     snprintf(mean, sizeof mean, ", %.60s %.60s%s", state->quantity, both, state->doubtful ? " !" : "");
   }
-  const char *unit = state->of_mean ? " %" : state->unit ? state->unit : "";
+  const char *unit = state->unit ? state->unit : "";
   char point[32] = "";
   if (state->point)
     snprintf(point, sizeof point, " at point %lld", (long long)state->point);
   if (state->reached > 0)
-    snprintf(rule, sizeof rule, ", the rule's interval%s \xc2\xb1 %.2g%s (asked %.2g%s)", point,
-             (state->of_mean ? 100 : 1) * state->reached, unit, (state->of_mean ? 100 : 1) * state->asked, unit);
+    snprintf(rule, sizeof rule, ", the rule's interval%s \xc2\xb1 %.2g%s (asked %.2g%s)", point, state->reached, unit,
+             state->asked, unit);
   snprintf(buffer, size, "%lld of %s%lld runs%s%s, %d running%s%s%s%s", (long long)state->done,
            state->total_is_minimum ? "at least " : "", (long long)state->total, state->part ? " of this round" : "",
            failed, (int)state->running, rate, time, mean, rule);

@@ -20,7 +20,6 @@ struct progress_state {
   double reached, asked; /* half width of the stopping rule's interval, the widest of the open points; 0: no rule */
   int64_t point;         /* the point of that interval; 0: the only one */
   const char *unit;      /* of both, with a blank before it; NULL: none */
-  bool of_mean;          /* both are shares of the mean */
   bool doubtful;         /* some of these runs are in doubt: "!" behind the mean */
   bool part;             /* one of several campaigns, as of a study: plain lines come two seconds apart or later */
 };

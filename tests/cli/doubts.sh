@@ -197,7 +197,7 @@ expect 0 "$clast" query withheld.db "select count(strength), sum(withheld(engine
 prints "3,3,6" # the store keeps the raw values
 ! grep -q "in doubt" err || fail "a question about the words is told of them"
 expect 0 "$clast" query withheld.db "select avg(strength) from runs"
-says "3 runs of this store are in doubt: see columns doubtful and warnings of the view runs"
+says "3 runs of this store have a result in doubt: see columns doubtful and warnings of the view runs"
 printf 'name: liquid\nscene: disruption\nset: {fidelity.particles: 300, fidelity.projectile_spacing: 0.5, stop.end_time: 9 us}\nvary: {target.strength: [true, false]}\nseeds: {per_point: 2}\nstore: liquid.db\n' >liquid.yaml
 expect 0 "$clast" run liquid.yaml -j 2 --quiet
 same "$(number liquid.db "select (select count(*) from run where largest_fraction >= 0) || ' ' || (select count(largest_fraction) from runs) || ' ' || count(largest_fraction_mean) || ' ' || count(largest_fraction_sd) || ' ' || count(mean_fragment_mass_mean) from points")" "4 2 1 1 2" "a main result that is withheld"

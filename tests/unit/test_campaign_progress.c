@@ -36,9 +36,9 @@ static void a_rule_tells_how_narrow_its_interval_is(void **state) {
   FILE *out = fmemopen(text, sizeof text, "w");
   struct progress *progress = progress_create(out, PROGRESS_BAR, false, 200);
   struct progress_state now = of(10);
-  now.reached = 0.0584, now.asked = 0.05, now.of_mean = true;
+  now.reached = 5.84, now.asked = 5, now.unit = " %";
   progress_update(progress, &now, 0, false);
-  now.reached = 2.6e5, now.asked = 2e5, now.of_mean = false, now.unit = " Pa", now.point = 2;
+  now.reached = 2.6e5, now.asked = 2e5, now.unit = " Pa", now.point = 2;
   progress_update(progress, &now, 100, true);
   progress_free(progress);
   fclose(out);
