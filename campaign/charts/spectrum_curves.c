@@ -292,7 +292,7 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
   TRY(ask_pools_end(&pools));
   if (curves->count > 0)
     return STATUS_OK;
-  return status_fail(error, STATUS_USAGE, "no finished run to draw: the store has none, or none meets --where");
+  return status_fail(error, STATUS_USAGE, "no finished run to draw");
 }
 
 status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,

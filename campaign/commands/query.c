@@ -7,6 +7,7 @@ struct options {
   bool list;
   const char *named;
   struct option_list with;
+  struct ask_choice choice;
   int64_t seconds;
 };
 
@@ -57,6 +58,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
   if (options->named && !canned)
     return STATUS_USAGE;
   TRY(read_parameters(options, &parameters, error));
+  struct ask_choice choice = options->choice;
+  choice.axes = true;
+  if (choice.campaign || choice.where)
+    TRY(ask_choose(store, &choice, error));
   TRY(ask_register_functions(store, error));
   const char *sql = canned ? canned->sql : line->arguments[1];
   TRY(table_answer(answer_to_user(store, sql, options->with.count, parameters.all, (double)options->seconds, error),
@@ -96,6 +101,8 @@ static const struct option_row rows_of_options[] = {
     OPTION_ROW_FLAG("list", 'l', struct options, list),
     OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL),
     OPTION_ROW_LIST("with", 0, "NAME=VALUE", struct options, with),
+    OPTION_ROW_TEXT("campaign", 0, "CAMPAIGN", struct options, choice.campaign, NULL),
+    OPTION_ROW_TEXT("where", 'w', "SQL", struct options, choice.where, NULL),
     OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0"),
 };
 

@@ -192,11 +192,6 @@ void campaign_tell_kept(const struct scene *scene, const char *before, FILE *out
  * one line. scene_reference: value of `scene`. malloc'd; NULL when memory is out. */
 char *campaign_write_list(const struct campaign *campaign, const char *scene_reference, const char *comment);
 
-/* What `clast converge` takes to study a scene with its overridden inputs: "NAME --set 'a=2 m' -Q QUANTITIES --store
- * FILE". False: it does not fit, and `text` is empty. */
-bool campaign_write_study(const struct scene *scene, const char *scene_reference, const char *quantities,
-                          const char *store, char *text, size_t size);
-
 /* ---- A campaign whose failed runs are tried again (`clast retry`) ---- */
 
 /* Limits as a user types them ("30 min", off); NULL: twice the campaign's. Adds this many attempts and removes the

@@ -208,6 +208,17 @@ static void read_fragments(struct reading *r, document_node *node) {
 
 /* ---- shots ---- */
 
+/* The inputs of a shot as words of a command. */
+static void note_set(document_node *set, struct observed_shot *shot) {
+  for (size_t i = 0; set && document_kind(set) == DOCUMENT_MAPPING && i < document_count(set); i++) {
+    const char *key = NULL, *value = document_scalar(document_item(set, i, &key));
+    char item[3 * FIELD_TEXT_SIZE];
+    snprintf(item, sizeof item, "%s=%s", key, value ? value : "");
+    text_append(shot->set, sizeof shot->set, " --set");
+    text_append_word(shot->set, sizeof shot->set, item);
+  }
+}
+
 static void read_shot(struct reading *r, document_node *node) {
   static const char *const also[] = {"set", "measured", "fragments", NULL};
   struct observed *m = r->observed;
@@ -228,6 +239,7 @@ static void read_shot(struct reading *r, document_node *node) {
   document_node *data = document_key(node, "measured"), *fragments = document_key(node, "fragments");
   campaign_read_set(document_key(node, "set"), NULL, r->campaign, shot->scene, false,
                     "known here and unknown in the campaign (`vary`); leave one of them out");
+  note_set(document_key(node, "set"), shot);
   if (data && (document_kind(data) != DOCUMENT_SEQUENCE || document_count(data) == 0))
     document_report(data, "measured", "expected a list of {quantity: NAME, value: NUMBER, error: NUMBER}");
   else

@@ -33,6 +33,7 @@ struct observed_shot {
   char name[FIELD_TEXT_SIZE];
   int64_t specimens;
   struct scene *scene; /* owned: the campaign's scene with this shot's inputs */
+  char set[1000];      /* these, as a command takes them: " --set charge.energy='1 kJ/m'" */
 };
 
 struct observed {

@@ -34,6 +34,7 @@ struct fit {
   const struct campaign *campaign; /* borrowed */
   const struct observed *observed; /* borrowed */
   const char *scene_reference;     /* from the current folder; borrowed */
+  char words[1000];                /* the campaign's file and --store, for a command */
   struct fit_rule rule;
 
   size_t inputs, axis[INFERENCE_INPUTS]; /* axis of the campaign of each unknown input */

@@ -374,7 +374,7 @@ static bool has_study(const struct observed_datum *datum) {
   return datum->ask.kind != ASK_SPECIMENS_COUNT && datum->ask.kind != ASK_SPECIMENS_SHARE;
 }
 
-/* The command that studies the data of a shot, with the inputs that campaign and shot set. */
+/* The command that studies the data of a shot: the campaign at the scene's own values of its unknown inputs. */
 static void tell_study(const struct fit *fit, size_t s, FILE *out) {
   const struct observed_shot *shot = &fit->observed->shots[s];
   char command[PARAGRAPH] = "", names[PARAGRAPH] = "";
@@ -387,7 +387,17 @@ static void tell_study(const struct fit *fit, size_t s, FILE *out) {
   }
   if (count == 0)
     return;
-  if (campaign_write_study(shot->scene, fit->scene_reference, names, fit->campaign->store, command, sizeof command))
+  bool fits = text_append(command, sizeof command, "%s%s", fit->words, shot->set);
+  for (size_t i = 0; i < fit->inputs; i++) {
+    const struct field *row = fit->campaign->axes[fit->axis[i]].row;
+    struct field_value own;
+    char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE];
+    field_get(row, shot->scene->inputs, &own);
+    field_print(row, &own, value, sizeof value);
+    snprintf(set, sizeof set, "%s=%s", row->path, value);
+    fits = fits && text_append(command, sizeof command, " --set") && text_append_word(command, sizeof command, set);
+  }
+  if (fits && text_append(command, sizeof command, " -Q %s", names))
     words_print(
         out, "",
         "RESOLUTION: a study tells it%s%s, at the scene's own values of the unknown inputs: `clast converge %s`",

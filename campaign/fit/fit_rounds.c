@@ -360,6 +360,8 @@ status fit_rounds_launch(const struct command_line *line, const struct fit_launc
   if (options->store)
     snprintf(campaign->store, sizeof campaign->store, "%s", options->store);
   TRY(fit_create(campaign, launching.observed, &rule, scene, &launching.fit, error));
+  option_words(line->arguments[1], &(struct option_list){0}, options->store, launching.fit->words,
+               sizeof launching.fit->words);
   TRY(check_withheld(launching.fit, error));
   return run_fit(launching.fit, options, line, error);
 }

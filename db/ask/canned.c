@@ -63,7 +63,8 @@ static const struct query_canned queries[] = {
      "cpu_time FROM session s LEFT JOIN run r USING (session_id) GROUP BY s.session_id",
      ""},
     {"axes", "The inputs that campaigns varied, and how many values each has.",
-     "SELECT a.column_name, a.path, a.unit, (SELECT count(DISTINCT value) FROM point_input i WHERE i.path = a.path) AS "
+     "SELECT a.column_name, a.path, a.unit, (SELECT count(DISTINCT value) FROM point_input i JOIN point USING "
+     "(point_id) WHERE i.path = a.path) AS "
      "\"values\", a.meaning FROM axis a ORDER BY a.path",
      ""},
     {"columns", "Every table and view, column by column, with unit and meaning.",

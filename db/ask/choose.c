@@ -96,6 +96,14 @@ static status choose_runs(struct store *store, const char *where, struct error *
     TRY(sql_run(insert, doing, error));
   }
   TRY(answer_end(&runs));
+  int64_t none = 0;
+  TRY(sql_integer(store->db, "SELECT EXISTS (SELECT 1 FROM main.run) AND NOT EXISTS (SELECT 1 FROM temp.chosen_run)", 0,
+                  &none, error));
+  if (none) {
+    const char *file = sqlite3_db_filename(store->db, "main"), *name = strrchr(file, '/');
+    return status_fail(error, STATUS_USAGE, "%.200s: none of the runs meets --where \"%.200s\"%s",
+                       name ? name + 1 : file, where, store->left_out ? "; those of studies need --studies" : "");
+  }
   TRY(sql_execute(store->db,
                   "DELETE FROM temp.chosen_point WHERE point_id NOT IN (SELECT point_id FROM main.run JOIN "
                   "temp.chosen_run USING (run_id)); CREATE TEMP VIEW run AS SELECT * FROM main.run WHERE run_id IN "

@@ -271,12 +271,6 @@ status ask_pairs_read(const char *first, const char *second, const char *quantit
   TRY(ask_quantity_main(a, pairs->main, &pairs->quantity, error));
   for (int k = 0; k < 2; k++) {
     TRY(read_values((struct store *const[]){a, b}, pairs, k, error));
-    double runs = 1;
-    if (choice->where)
-      TRY(answer_number(k ? b : a, &runs, error, "SELECT count(*) FROM run"));
-    if (runs < 1)
-      return status_fail(error, STATUS_USAGE, "%s: none of the runs meets --where \"%.200s\"", k ? second : first,
-                         choice->where);
     if (pairs->side[k].group_count == 0)
       return status_fail(error, STATUS_USAGE, "%s: no run that counts has a value of %s that is not withheld",
                          k ? second : first, pairs->quantity);

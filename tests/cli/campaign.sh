@@ -262,7 +262,7 @@ expect 0 "$clast" plan unit.yaml --no-trial --store unit.db
 tr -s "\n " " " <out | grep -qF "(last_break to ±1 ns; at least" || fail "a width without a unit"
 expect 0 "$clast" run unit.yaml --quiet
 says "before seeds.until was met (last_break to ± 1 ns)"
-tr '\n' ' ' <err | grep -Eq 'its interval is ± [0-9.e-]+ ns\. Raise' || fail "an interval without a unit: $(cat err)"
+tr '\n' ' ' <err | grep -Eq 'its interval is ± [0-9.e+-]+ ns\. Raise' || fail "an interval without a unit: $(cat err)"
 # An interval of a table can be narrow where the rule still wants more runs.
 half=$(number wide.db 'select 1.2 * max(ci_half) from (select 2.0010 * sqrt((avg(x * x) - avg(x) * avg(x)) / 59) ci_half from (select point_id, largest_fraction x from run where counts) group by point_id)')
 sed "s/half_width: 0.0001/half_width: $half/" wide.yaml >narrow.yaml

@@ -138,6 +138,11 @@ for command in $("$clast" help | sed -n '/^results:/,/^the store:/s/^  \([a-z]*\
     fail "clast $command cannot choose runs"
 done
 ok "every question chooses runs"
+# A ready query, too.
+two_scenes queried.db
+expect 0 "$clast" query queried.db --named points --campaign crash --csv
+same "$(tail -n +2 out | cut -d, -f1 | tr '\n' ' ')" "$("$clast" query queried.db "select point_id from campaign_point join campaign using (campaign_id) where name = 'crash'" --csv | tail -n +2 | tr '\n' ' ')" "points of one campaign"
+expect 64 "$clast" query queried.db --named slowest --where "seed < 0"
 same "$("$clast" stats one.db --by strain --where 'replicate < 2' --csv 2>/dev/null | cut -d, -f4,5 | tail -n 1)" "2,4" "points and runs"
 same "$("$clast" estimates one.db --where 'replicate = 1' --csv 2>/dev/null | grep -c ',from_2,')" 4 "points with the second seed"
 same "$("$clast" estimates one.db --campaign one --point 2 --csv 2>/dev/null | wc -l)" 4 "rows of a point"
@@ -161,8 +166,10 @@ expect 64 "$clast" stats one.db --where "threshold.strain > 0.02"
 says "The view runs has threshold_strain"
 expect 64 "$clast" stats one.db --where "strain = 5%"
 says "SQL error: incomplete input"; grep -q chosen_point err && fail "SQL of the program"
-expect 64 "$clast" compare one.db one.db --where "seed < 0"
-says "one.db: none of the runs meets --where \"seed < 0\""
+for command in "compare one.db" stats estimates status extremes spectrum; do # no empty table, and no other reason
+  expect 64 "$clast" $command one.db --where "seed < 0"
+  says "one.db: none of the runs meets --where \"seed < 0\""
+done
 expect 64 "$clast" query one.db "select threshold.strain from runs"
 says "The view runs has threshold_strain"
 expect 64 "$clast" stats one.db --where "1) ; DELETE FROM run --"
@@ -227,4 +234,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 110
+done_after 121

@@ -37,7 +37,7 @@ expect 0 "$clast" spectrum "${choice[@]}" --plot --ascii
 same "$(awk '$1 + 0 > 0 && $2 + 0 > 0 {n += $2} END {print n}' out)" "$(cat number)" "fragments of the text plot"
 expect 64 "$clast" spectrum small.db --by nothing
 expect 64 "$clast" spectrum small.db --where "replicate > 99" --plot
-says "none meets --where"
+says "small.db: none of the runs meets --where \"replicate > 99\""
 
 # Beside a measured spectrum: cumulative, by size.
 printf '%s\n' '# source: <made up>' '# complete from: 0.3 kg' 'mass (kg), count' 0.1,3 0.4,6 1.5,4 6,1 >measured.csv
