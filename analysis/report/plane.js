@@ -31,8 +31,10 @@ function doubtsOf(from, quantity) {
 const wordsOf = (doubt) => [...new Set(doubt?.words.split(/[, ]+/) ?? [])];
 const doubtText = ({doubt, n}) => (doubt ? `${doubt.doubtful} of ${plural(n ?? 0, 'run')}: ${wordsOf(doubt).join(', ')}` : 'none');
 
+let told = new Set(); // words that the caption of the plane explains; the captions below it name them only
+
 // What the marks of these cells mean: how many runs, which conditions they break, and what to do.
-export function doubtSentence(from, rows, quantity = state.quantity) {
+export function doubtSentence(from, rows, quantity = state.quantity, inPlane = false) {
   const doubtful = rows.filter((row) => row.doubt);
   if (doubtful.length === 0) return '';
   const result = ` ${quantity === 'beta' ? 'mean_fragment_mass' : quantity.replace(/^result_[^_]+_/, '')} `;
@@ -40,8 +42,10 @@ export function doubtSentence(from, rows, quantity = state.quantity) {
   const sentences = new Map(known.map((row) => [row.word, `${row.withheld ? ' (withholds the value)' : ''}: ${row.sentence}`]));
   const sum = (of) => of.reduce((total, count) => total + (count ?? 0), 0);
   const words = [...new Set(doubtful.flatMap((row) => wordsOf(row.doubt)))];
-  return ` !: in doubt, ${sum(doubtful.map((row) => row.doubt.doubtful))} of ${sum(rows.map((row) => row.n))} runs. ` +
-    words.map((word) => `${word}${sentences.get(word) ?? `: clast explain ${word}`}.`).join(' ');
+  const above = words.filter((word) => told.has(word)), below = words.filter((word) => !told.has(word));
+  if (inPlane) told = new Set(words);
+  return ` !: in doubt, ${sum(doubtful.map((row) => row.doubt.doubtful))} of ${sum(rows.map((row) => row.n))} runs${above.length ? `: ${above.join(', ')} (explained above)` : ''}. ` +
+    below.map((word) => `${word}${sentences.get(word) ?? `: clast explain ${word}`}.`).join(' ');
 }
 
 // Every point with the mean of the quantity, the half width of its interval over seeds, and the error that the
@@ -313,17 +317,18 @@ export async function showPlane() {
   const figure = document.getElementById('plane-chart');
   const title = label(state.stores, state.quantity);
   const at = slice();
+  told = new Set();
   plane.rows = data(state.quantity);
   const rows = (plane.shown = plane.rows.filter((row) => inSlice(row, at)));
   const known = rows.filter((row) => row.mean !== null);
   const untold = [...new Set(rows.map((row) => row.untold).filter(Boolean))].join(', or ');
   const reason = untold ? ` -: the exponent is too uncertain to print: ${untold}.` : '';
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
-  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows)}`);
+  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows, state.quantity, true)}`);
   const spec = !state.x ? {layer: []} : state.y ? planeSpec(rows, title) : lineSpec(known, title), texts = spec.layer.some(({encoding}) => encoding.text?.field === 'cell');
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${doubtSentence(store(), rows)}`;
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${state.x ? doubtSentence(store(), rows, state.quantity, true) : ''}`;
   if (!state.x) {
-    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows, false)}${doubtSentence(store(), rows)}`);
+    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows, false)}${doubtSentence(store(), rows, state.quantity, true)}`);
     return;
   }
   const inputs = [state.x, state.y].filter(Boolean);

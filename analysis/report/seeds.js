@@ -20,7 +20,7 @@ function valuesOf(from, point, quantity) {
 function stepOf(samples) {
   const all = summary(samples.flatMap((sample) => sample.values)), range = all.largest - all.least;
   const widths = samples.map(({values}) => summary(values)).map((of) => (2 * (of.threeQuarters - of.quarter)) / Math.cbrt(of.n)).filter((width) => width > 0);
-  const wanted = Math.min(Math.max(Math.min(range / 8, ...widths), range / 80), range / 8) || 1;
+  const wanted = Math.min(Math.max(Math.min(range / 8, ...widths), range / 80), range / 8) || Math.abs(all.largest) / 10 || 1; // equal values
   const power = 10 ** Math.floor(Math.log10(wanted) + 1e-9);
   return power * [5, 2, 1].find((factor) => factor * power <= wanted * (1 + 1e-9));
 }

@@ -91,7 +91,7 @@ export async function showSpectrum() {
   const foot = Math.min(...rows.map((row) => (row.low > 0 ? row.low : row.density / 3))); // of the axis; an interval that reaches 0 ends there
   for (const row of rows) row.low = row.low > 0 ? row.low : foot / 10;
   const y = (field) => ({field, type: 'quantitative', scale: {type: 'log', domainMin: foot, nice: false}, title: `F(m), fragments per run and ${kg}`, axis: logAxis([foot, ...rows.map((row) => row.high)])});
-  const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
+  const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null, symbolOpacity: 1} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
   const layer = [
     {transform: [{filter: 'datum.hw95 !== null'}], mark: {type: 'rule', strokeWidth: 3, opacity: 0.4, clip: true, tooltip: null}, encoding: {x, y: y('low'), y2: {field: 'high'}, color: colour}},
@@ -107,7 +107,7 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: heightWith(names), layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bars: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}, down to the axis where one reaches 0. Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have, so that they lie higher; p (clast exponents): below 0.1 a power law does not fit.${complete.length ? ` Pale marks: below ${complete.join(', ')} ${kg} fragments are missing (too few particles or grains).` : ''}${[...doubted.keys()].map((from) => doubtSentence(from, drawn.filter((curve) => curve.from === from).flatMap(of), 'beta')).join('')}`,
+    caption: `${told}. Bars: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}, down to the axis where one reaches 0.${fits.some((fit) => fit?.ends.length) ? ' Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have, so that they lie higher; p (clast exponents): below 0.1 a power law does not fit.' : ''}${complete.length ? ` Pale marks: below ${complete.join(', ')} ${kg} fragments are missing (too few particles or grains).` : ''}${[...doubted.keys()].map((from) => doubtSentence(from, drawn.filter((curve) => curve.from === from).flatMap(of), 'beta')).join('')}`,
     command: commandsOf(drawn.flatMap(({from, points}) => points.map((point) => ({from, point}))), ['clast spectrum', drawn[0].points.length > 1 ? ' --by ""' : '', 'spectrum']),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'number_density', 'number_density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

@@ -4,6 +4,7 @@ import {COLOURS} from './chart.js';
 import {cells, effect} from './plane.js';
 import {widestSpectrum} from './questions.js';
 import {ask, matchesOf} from './stores.js';
+import {unitOf} from './words.js';
 
 export const state = {stores: [], active: 0, quantity: null, x: null, y: null, at: {}, chosen: new Set(), sql: null}; // at: values of other inputs by column
 
@@ -71,6 +72,11 @@ export function complete() {
   if (!known.includes(state.quantity)) state.quantity = known.includes(facts.default_quantity) ? facts.default_quantity : known[0];
   const columns = varied.map((axis) => axis.column_name), ofAll = columns.filter((column) => points.every((point) => point[column] !== null));
   let first = ofAll.length ? ofAll : columns; // an input of one scene of two is no axis of both
+  if (points.length > 1) { // of inputs that tell the points apart in the same way, such as the columns, rows and spacing of grains, one with a unit
+    const of = new Map(), groups = (column) => JSON.stringify(points.map((point) => points.findIndex((other) => other[column] === point[column])));
+    for (const column of first) if (!of.has(groups(column)) || (!unitOf([store()], of.get(groups(column))) && unitOf([store()], column))) of.set(groups(column), column);
+    first = [...of.values()];
+  }
   if (first.length > 2 && !columns.includes(state.x)) { // the page opens on the two inputs with the largest effect
     const rows = cells(store(), state.quantity), of = new Map(first.map((column) => [column, effect(rows, column)]));
     const two = [...first].sort((a, b) => of.get(b) - of.get(a)).slice(0, 2);

@@ -118,6 +118,7 @@ struct picture_choice {
   const char *caption, *what, *view, *axis, *at;
   struct chart_options chart; /* options of a profile's chart */
   double width;               /* width of a body's picture, pixels; 0: default */
+  bool quiet;                 /* does not print what the marks mean */
 };
 
 /* "812 µs", "10 ms"; "" of a time that is not finite. */

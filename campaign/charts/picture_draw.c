@@ -33,7 +33,7 @@ struct movie {
 
 /* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions. Prints a line for each on stderr, of
  * a movie for its last snapshot. */
-static void tell_doubts(const char *fields, const struct movie *movie, char text[DOUBTS]) {
+static void tell_doubts(const char *fields, const struct movie *movie, bool quiet, char text[DOUBTS]) {
   struct snapshot_read *file;
   struct error error;
   struct ask_doubts doubts = {0};
@@ -47,7 +47,7 @@ static void tell_doubts(const char *fields, const struct movie *movie, char text
     return;
   ask_doubts_run(&doubts, engine, words, OUTCOME_DEFAULT, 1);
   charts_doubts(NULL, &doubts, text, DOUBTS);
-  if (!movie || movie->at + 1 == movie->count)
+  if (!quiet && (!movie || movie->at + 1 == movie->count))
     uncertainty_doubts(&doubts, stderr);
 }
 
@@ -133,7 +133,7 @@ static status draw_grains(const char *fields, const char *picture, const struct 
   }
   name_run(fields, movie, engine, seed, time, title, sizeof title);
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  tell_doubts(fields, movie, doubts);
+  tell_doubts(fields, movie, options->quiet, doubts);
   panel.caption = *doubts ? doubts : NULL;
   panel.frame = movie ? &movie->frame : NULL;
   if (movie && movie->sheet) {
@@ -220,7 +220,7 @@ static status draw_particles(const char *fields, const char *picture, const stru
   else
     picture_particles_numbers(&cloud, numbers, sizeof numbers);
   if (picture)
-    tell_doubts(fields, movie, doubts);
+    tell_doubts(fields, movie, options->quiet, doubts);
   look.doubts = doubts;
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
@@ -279,7 +279,7 @@ static status draw_profile(const char *fields, const char *picture, const struct
   }
   if (code)
     goto cleanup;
-  tell_doubts(fields, NULL, doubts);
+  tell_doubts(fields, NULL, options->quiet, doubts);
   name_look(fields, NULL, &(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
   const struct picture_page page = charts_page(picture, &options->chart);
   const struct picture_words words = {options->caption ? options->caption : title, doubts, "depth at the start (m)",

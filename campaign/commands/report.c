@@ -33,6 +33,7 @@ struct making {
   size_t input_count;
   struct ask_page *page;
   size_t tried, picture_bytes, left_out, not_drawn; /* of pictures */
+  char left_out_of[80];                             /* numbers of runs */
   bool full;                                        /* the next picture would be too much */
 };
 
@@ -108,13 +109,22 @@ static status add_differences(struct making *making, const char *name, struct er
   return STATUS_OK;
 }
 
+static void leave_out(struct making *making, const struct answer *kept) {
+  enum { NAMED = 5 };
+  if (making->left_out < NAMED)
+    text_append(making->left_out_of, sizeof making->left_out_of, "%s%lld", making->left_out ? ", " : "",
+                (long long)answer_integer(kept, 0));
+  if (making->left_out++ == NAMED)
+    text_append(making->left_out_of, sizeof making->left_out_of, ", ...");
+}
+
 /* Draws into a file beside the page. For a missing or damaged fields file the page reports that there is no picture. */
 static status add_picture(struct making *making, const struct answer *kept, struct error *error) {
   OWNED unsigned char *png = NULL;
   size_t size = 0;
   char path[LIMITS_PATH];
   if (making->full || making->tried == PICTURES) {
-    making->left_out++;
+    leave_out(making, kept);
     return STATUS_OK;
   }
   making->tried++;
@@ -122,7 +132,7 @@ static status add_picture(struct making *making, const struct answer *kept, stru
   OWNED char *fields = ask_run_fields(kept, 3);
   if (!fields)
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
-  status code = picture_draw(fields, path, &(struct picture_choice){.width = PICTURE_WIDTH}, NULL);
+  status code = picture_draw(fields, path, &(struct picture_choice){.width = PICTURE_WIDTH, .quiet = true}, NULL);
   if (code) {
     making->not_drawn++;
     return STATUS_OK;
@@ -130,7 +140,8 @@ static status add_picture(struct making *making, const struct answer *kept, stru
   code = file_read(path, "picture", &png, &size, error);
   unlink(path);
   making->full = making->picture_bytes + size > PICTURE_BYTES;
-  making->left_out += making->full;
+  if (making->full)
+    leave_out(making, kept);
   if (code || making->full)
     return code;
   making->picture_bytes += size;
@@ -153,7 +164,11 @@ static status fill_page(struct making *making, const char *name, const char *pat
   while (answer_next(&kept))
     TRY(add_picture(making, &kept, error));
   TRY(answer_end(&kept));
+  char room[64];
+  snprintf(room, sizeof room, "a page has at most %d pictures and %d kB of them", PICTURES, PICTURE_BYTES / 1000);
   TRY(add_count(making, "pictures_left_out", making->left_out, error));
+  TRY(ask_page_fact(making->page, "pictures_left_out_of", making->left_out_of, error));
+  TRY(ask_page_fact(making->page, "pictures_room", room, error));
   TRY(add_count(making, "pictures_not_drawn", making->not_drawn, error));
   return ask_page_file(making->page, &data->bytes, &data->size, error);
 }

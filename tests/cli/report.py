@@ -292,7 +292,7 @@ def loads_again(browser):
     browser.until("[...document.querySelectorAll('#asked summary')].slice(-2).map((s) => s.textContent).join() === 'The campaign file of more 4, number 5,The campaign file of more 4, number 6'")
     done("a title names three campaigns, and no search whose points the page leaves out")
     browser.open("again.html", "#points=3")
-    browser.until("/has a value of this quantity. !: in doubt, 3 of 3 runs. box .withholds the value.: /.test(document.querySelector('#seeds')?.textContent)")
+    browser.until("/has a value of this quantity. !: in doubt, 3 of 3 runs: box .explained above../.test(document.querySelector('#seeds')?.textContent)")
     done("values that are withheld are told with their reason")
     browser.open(page, "#quantity=beta")
     wait_shown(browser, 1)
@@ -309,8 +309,9 @@ def marks(browser):
     caption = text(browser, "#plane-chart figcaption")
     assert why in caption and "that was studied at 1 point: >= 0.042." in caption, caption
     assert re.search(r", ([0-9]+) to ([0-9]+) grains, 3 seeds a point", text(browser, "#made")), text(browser, "#made")
-    assert why.replace("6 of 12", "3 of 6") in text(browser, "#seeds figcaption"), text(browser, "#seeds figcaption")
-    assert why.replace("6 of 12", "3 of 6") in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
+    for figure in ("#seeds", "#spectrum"): # advice stands once
+        below = text(browser, f"{figure} figcaption")
+        assert " !: in doubt, 3 of 6 runs: step (explained above)." in below and "energy may drift" not in below, below
     table = "[...document.querySelectorAll('%s tbody tr')].map((r) => [...r.cells].map((c) => c.textContent.trim()))"
     rows = browser.js(table % "#points")
     assert [row[6][-2:] == " !" for row in rows] == [False, True, False, True] and rows[1][9] == "3 of 3 runs: step", rows
@@ -498,6 +499,27 @@ def side_by_side(browser):
     done("stores side by side tell inputs that differ, and grains of each")
 
 
+def equal_runs(browser):
+    """All runs are 1: no run is the least, no line is drawn, and the axis of the runs stays near their value."""
+    browser.open("whole.html")
+    wait_shown(browser, 1)
+    ticks = [float(t) for t in browser.js("[...document.querySelectorAll('#seeds .role-axis-label text')].map((t) => t.textContent)")]
+    assert 0.95 in ticks and 1.05 in ticks, ticks
+    assert "Lines:" not in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
+    pictures = browser.js("[...document.querySelectorAll('#runs figcaption')].map((c) => c.textContent)")
+    assert pictures and not any("least" in p or "largest" in p for p in pictures), pictures
+    done("runs that are equal")
+
+
+def of_a_study(browser):
+    """Columns, rows and spacing of grains tell the levels apart in the same way: the page opens on the spacing alone."""
+    browser.open("levels.html")
+    wait_shown(browser, 1)
+    of = lambda axis: browser.js(f"document.querySelector('#choices [name={axis}]').value")
+    assert (of("x"), of("y")) == ("grain_spacing", ""), (of("x"), of("y"))
+    done("a page of a study opens on one input")
+
+
 def widths(browser):
     for width in (1280, 768, 390):
         browser.size(width, 900)
@@ -528,6 +550,8 @@ with Browser() as browser:
     side_by_side(browser)
     several(browser)
     ends(browser)
+    equal_runs(browser)
+    of_a_study(browser)
     assert browser.complaints == [], browser.complaints
     outside = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:", "about:"))]
     assert outside == [], outside

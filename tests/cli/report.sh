@@ -291,9 +291,16 @@ JS
   expect 0 "$clast" report three.db
   two_scenes scenes.db
   expect 0 "$clast" report scenes.db
+  tiny whole "keep: {fields: extremes}"
+  sed -i 's/2 %, 5 %/50 %, 60 %/; s/2 deg, 6 deg/20 deg, 60 deg/' whole.yaml
+  expect 0 "$clast" run whole.yaml --quiet
+  expect 0 "$clast" report whole.db
+  grep -q 'marked' err && fail "marks of each picture are printed"
+  expect 0 "$clast" converge block-impact --set body.columns=12 --set body.rows=8 --set stop.end_time=0.2ms --knob grains=0.02m,0.014m,0.01m --seeds 2 --within off --store levels.db --quiet
+  expect 0 "$clast" report levels.db --studies
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 68
+  done_after 72
 else
   done_after 47
 fi
