@@ -72,9 +72,8 @@ static void pools_of_runs(void **state) {
   assert_true(some.pools == 2 && some.points == 4 && some.runs == 4);
   assert_near(some.sum, number(store, "SELECT sum(total_mass) FROM runs WHERE material_k > 5e30 AND replicate = 1"),
               1e-9);
-  OK(ask_choose(store, &(struct ask_choice){.where = "replicate > 99"}, &error));
-  OK(look_at(ask_pools(store, &(struct ask_pool_choice){0}, NULL, &error), &none));
-  assert_int_equal(none.pools, 0);
+  assert_int_equal(ask_choose(store, &(struct ask_choice){.where = "replicate > 99"}, &error), STATUS_USAGE);
+  assert_string_equal(error.message, "test-store-pool.db: none of the runs meets --where \"replicate > 99\"");
   OK(ask_choose(store, &(struct ask_choice){.where = "replicate = 0 OR replicate = 2"}, &error));
   OK(look_at(ask_pools(store, &(struct ask_pool_choice){.point = 2}, NULL, &error), &one));
   OK(ask_choose(store, &(struct ask_choice){0}, &error));
