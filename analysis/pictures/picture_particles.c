@@ -261,6 +261,21 @@ static status leave_out(struct scene *s) {
   return STATUS_OK;
 }
 
+/* A unit of a fields file as other charts have it: "kg/m³" for "kg m-3". */
+static void write_unit(const char *unit, char *text, size_t size) {
+  char slashed[64] = "";
+  while (*unit) {
+    const size_t name = strcspn(unit, " -"), power = unit[name] == '-' ? strspn(unit + name + 1, "0123456789") : 0;
+    const char *const digits = unit + name + 1;
+    text_append(slashed, sizeof slashed, "%s%.*s", !*slashed ? "" : power ? "/" : " ", (int)name, unit);
+    if (power && strncmp(digits, "1", power) != 0)
+      text_append(slashed, sizeof slashed, "^%.*s", (int)power, digits);
+    unit += name + (power ? 1 + power : unit[name] == '-');
+    unit += *unit == ' ';
+  }
+  text_raise(slashed, text, size);
+}
+
 /* Chooses a prefix of the unit by the largest value shown, such as GPa. Shares, lengths and masses get none. */
 static void choose_unit(struct scene *s, double largest) {
   static const struct {
@@ -276,8 +291,10 @@ static void choose_unit(struct scene *s, double largest) {
       letter = prefix[k].letter;
       break;
     }
+  char shown[64];
+  write_unit(unit, shown, sizeof shown);
   snprintf(s->label, sizeof s->label, strcmp(unit, "1") == 0 ? "%s" : "%s (%s%s)",
-           s->look->quantity ? s->look->quantity : "", letter, unit);
+           s->look->quantity ? s->look->quantity : "", letter, shown);
 }
 
 /* Collects the finite values of drawn particles. `searched`: only of particles that were searched for fragments, so
