@@ -58,23 +58,41 @@ static bool names_paper(const char *entry, const char *source) {
   return false;
 }
 
-enum { PAPERS = 64 };
+enum { PAPERS = 64, RESTS = 400 };
 struct citing {
-  struct table *table; /* NULL: entries of BibTeX are printed */
+  struct table *table; /* a row for each source; NULL: none */
   bool named[PAPERS];
+  char rests[PAPERS + 1][RESTS]; /* what rests on each paper, in short; the last: on none of them */
 };
+
+/* "weibull" of target.material.weibull.k, "density of nylon" of projectile.material.density of nylon. */
+static void add_short(char rests[RESTS], const char *what) {
+  static const char *const heads[] = {"target.", "projectile.", "material."};
+  char word[2 * FIELD_TEXT_SIZE], have[RESTS + 4], item[2 * FIELD_TEXT_SIZE + 4];
+  for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
+    what += strncmp(what, heads[i], strlen(heads[i])) == 0 ? strlen(heads[i]) : 0;
+  snprintf(word, sizeof word, "%.*s%s", (int)strcspn(what, ". "), what, strchr(what, ' ') ? strchr(what, ' ') : "");
+  snprintf(have, sizeof have, ", %s, ", rests);
+  snprintf(item, sizeof item, ", %s, ", word);
+  if (!strstr(have, item))
+    text_append(rests, RESTS, "%s%s", *rests ? ", " : "", word);
+}
 
 /* Takes a source. `what`: its subject, which is the engine, a path, or "target.material.density of basalt". */
 static void cite(struct citing *citing, const char *what, const char *source) {
   char all[512] = "", doi[128];
   size_t paper = 0;
+  bool any = false;
   for (const char *entry = references_text; entry && paper < PAPERS; entry = entry_after(entry), paper++) {
     if (!names_paper(entry, source))
       continue;
-    citing->named[paper] = true;
+    any = citing->named[paper] = true;
+    add_short(citing->rests[paper], what);
     if (value_of(entry, "doi", doi, sizeof doi))
       text_append(all, sizeof all, "%s%s", *all ? " " : "", doi);
   }
+  if (!any)
+    add_short(citing->rests[PAPERS], what);
   if (!citing->table)
     return;
   table_text(citing->table, what);
@@ -150,6 +168,35 @@ static status print_bibtex(const struct scene *scene, struct error *error) {
   return table_flush(stdout, error);
 }
 
+/* Each paper once, with what rests on it. */
+static status print_papers(const struct scene *scene, enum table_format format, struct error *error) {
+  struct citing citing = {0};
+  size_t paper = 0;
+  cite_scene(scene, &citing);
+  TABLE table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"paper", "doi", "for", NULL});
+  for (const char *entry = references_text; entry && paper < PAPERS; entry = entry_after(entry), paper++) {
+    char cited[256] = "", year[16] = "", title[256] = "", text[600], doi[128];
+    if (!citing.named[paper])
+      continue;
+    value_of(entry, "cited", cited, sizeof cited);
+    value_of(entry, "year", year, sizeof year);
+    value_of(entry, "title", title, sizeof title); /* "{Title" of {{Title}} */
+    snprintf(text, sizeof text, "%.*s %s: %s", (int)strcspn(cited, ";"), cited, year, title + (*title == '{'));
+    table_text(table, text);
+    table_text(table, value_of(entry, "doi", doi, sizeof doi) ? doi : NULL);
+    table_text(table, citing.rests[paper]);
+  }
+  if (*citing.rests[PAPERS]) {
+    table_text(table, "other sources, and our own choices");
+    table_missing(table);
+    table_text(table, citing.rests[PAPERS]);
+  }
+  TRY(table_end(table, error));
+  fputs("clast: --all has the source of each input and result, --bibtex the papers as BibTeX entries\n", stderr);
+  return STATUS_OK;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   SCENE scene = NULL;
@@ -158,6 +205,8 @@ static status run(const struct command_line *line, struct error *error) {
   TRY(option_load_scene(line->arguments[0], &options->set, &scene, error));
   if (options->bibtex)
     return print_bibtex(scene, error);
+  if (line->format == TABLE_TEXT)
+    return print_papers(scene, line->format, error);
   TABLE table = table_new(line->format, stdout);
   table_columns(table, (const char *const[]){"what", "source", "doi", NULL});
   cite_scene(scene, &(struct citing){.table = table});

@@ -255,6 +255,8 @@ static status take_option(struct parse *parse, int given, const char *word, stru
     return unknown_option(command, word, optopt, error); /* optopt is 0 for a long name */
   if (!row)
     return status_fail(error, STATUS_INTERNAL, "option table of %s", command->name);
+  if (row == &allow_row && strcmp(word + 2, row->name) != 0) /* who types --all does not allow commands */
+    return unknown_option(command, word, 0, error);
   if (given == ':')
     return status_fail(error, STATUS_USAGE, "--%s needs a value: --%s %s", row->name, row->name, row->argument);
   const status code = take_value(parse, index, optarg, error);

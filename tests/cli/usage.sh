@@ -128,8 +128,14 @@ done
 expect 64 "$clast" simulate basalt-sphere --set target.shape=box --set target.side='3 cm'
 says "no 'target.side'; known in 'target' are shape, "; says "width, depth, height"
 
+# an option that lets foreign programs run is written out: --all is no short form of it
+for words in "plan any.yaml" "serve any.yaml"; do
+  expect 64 "$clast" $words --all
+  says "has no option --all"
+done
+
 # a device that never ends is no input
 for words in "converge /dev/zero" "plan /dev/zero" "materials /dev/zero" "simulate /dev/zero"; do
   expect 65 bash -c "ulimit -t 10; [ $sanitized -ne 0 ] || ulimit -v 20000000; exec '$clast' $words" # a sanitizer maps terabytes
 done
-done_after 64
+done_after 66
