@@ -336,9 +336,18 @@ static void write_whole(double number, FILE *out) {
   }
 }
 
-/* Numbers with a positive exponent of up to `digits` become whole numbers. */
+/* Numbers with a positive exponent of up to `digits` become whole numbers; a unit behind a number is as in text_unit().
+ */
 static void write_powers(const char *text, long digits, FILE *out) {
   for (const char *at = text; *at;) {
+    if (at > text && at[-1] >= '0' && at[-1] <= '9' && strncmp(at, " 1/", 3) == 0) {
+      char unit[64] = "", shown[64];
+      text_append(unit, sizeof unit, "%.*s", (int)strcspn(at + 1, " ,;)"), at + 1);
+      text_unit(unit, shown, sizeof shown);
+      fprintf(out, " %s", shown);
+      at += 1 + strlen(unit);
+      continue;
+    }
     const size_t mantissa = strspn(at, "0123456789.");
     const char *power = at + mantissa;
     char *end = NULL;

@@ -55,8 +55,8 @@ void text_duration(double seconds, FILE *out);
  * people do not count digits. */
 void text_append_fixed(char *text, size_t size, double number, int decimals);
 
-/* Turns numbers such as 2.5e+33 and 1e-05 within a text into those that people write: 2.5×10^33, 10^-5. What does not
- * fit is cut.
+/* Turns numbers such as 2.5e+33 and 1e-05 within a text, and a unit 1/m^3 behind a number, into what people write:
+ * 2.5×10^33 m^-3, 10^-5. What does not fit is cut.
  */
 void text_powers(char *text, size_t size);
 /* The same of a long text, and in words of a million or less all digits: 3.8e+06 becomes 3 800 000, 1e+03 1000.

@@ -368,23 +368,20 @@ static struct sample_moments moments_of(size_t count, const struct difference_va
   return moments;
 }
 
-static double mean_of(const struct sample_moments *moments) {
-  return moments->n ? moments->mean : (double)NAN;
-}
-
 struct difference sample_difference(size_t first_count, const struct difference_value *first, size_t second_count,
                                     const struct difference_value *second, double level) {
   const struct sample_moments pairs = moments_of_pairs(first_count, first, second_count, second);
   const struct sample_moments all[2] = {moments_of(first_count, first), moments_of(second_count, second)};
   const size_t most = first_count > second_count ? first_count : second_count;
-  struct difference out = {.n = {first_count, second_count}, .mean = {mean_of(&all[0]), mean_of(&all[1])}};
+  struct difference out = {
+      .side = {sample_summarise_moments(&all[0], level), sample_summarise_moments(&all[1], level)}};
   if (pairs.n >= 2 && 2 * pairs.n >= most) {
     out.pairs = pairs.n;
     out.difference = pairs.mean;
     out.half_width = sample_summarise_moments(&pairs, level).half_width;
     return out;
   }
-  out.difference = out.mean[1] - out.mean[0];
+  out.difference = out.side[1].mean - out.side[0].mean;
   out.half_width = welch(all, level);
   return out;
 }

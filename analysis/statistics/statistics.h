@@ -161,9 +161,8 @@ struct difference_value {
 };
 
 struct difference {
-  size_t n[2];       /* values of each side */
+  struct sample_summary side[2]; /* of all values */
   size_t pairs;      /* pairs of runs with one seed that the interval is of; 0: the samples count as independent */
-  double mean[2];    /* of all values */
   double difference; /* second minus first: mean of the pairs, or of the means */
   double half_width; /* of the interval of the difference; NaN: too few values, or they do not vary */
 };

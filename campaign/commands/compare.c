@@ -2,10 +2,41 @@
 #include <math.h>
 
 #include "campaign/commands/commands.h"
+#include "db/store/views.h"
 
 struct options {
   const char *quantity;
 };
+
+static const char *const sides[] = {"a", "b"};
+
+/* People see the inputs first, and the interval of each mean. */
+static void name_columns(struct table *table, bool people, const struct sample_range *range) {
+  char name[32];
+  table_columns(table, people ? (const char *const[]){"inputs", "point a", "point b", "n a", "n b", "pairs", NULL}
+                              : (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", NULL});
+  for (int k = 0; k < 2; k++) { /* a narrow head ends its lines at blanks */
+    const char *const *const end = people ? (const char *const[]){"", "_hw95", "_weak"} : (const char *const[]){""};
+    for (int i = 0; i < (people ? 3 : 1); i++) {
+      snprintf(name, sizeof name, people ? "mean %s%s" : "mean_%s%s", sides[k], end[i]);
+      table_column(table, name, NULL);
+      table_range(table, *range);
+    }
+  }
+  table_columns(table, (const char *const[]){"difference", "hw95", NULL});
+  table_doubt_columns(table);
+}
+
+/* The mean of a side; for people with its interval. */
+static void mean_cells(struct table *table, bool people, const struct ask_pairs_row *row, int k) {
+  const struct sample_summary *side = &row->difference.side[k];
+  table_rests_on(table, row->doubts[k]);
+  table_real(table, people && row->untold[k] ? (double)NAN : isfinite(side->mean) ? side->mean : row->exponent[k]);
+  if (!people)
+    return;
+  table_real(table, side->half_width);
+  table_integer(table, side->weak);
+}
 
 /* Prints a row. Returns whether it has no interval although both sides have several runs. */
 static bool print(struct table *table, bool people, const struct ask_pairs_row *row, struct ask_doubts *sum) {
@@ -16,24 +47,23 @@ static bool print(struct table *table, bool people, const struct ask_pairs_row *
   struct ask_doubts both = *row->doubts[0];
   ask_doubts_add(&both, row->doubts[1]);
   ask_doubts_add(sum, &both);
+  if (people)
+    table_text(table, inputs);
   table_integer(table, row->point[0]);
   table_integer(table, row->point[1]);
-  table_text(table, people ? inputs : row->inputs);
+  if (!people)
+    table_text(table, row->inputs);
   const bool untold = people && (row->untold[0] || row->untold[1]);
   for (int k = 0; k < 2; k++)
     table_integer(table, (int64_t)row->runs[k]);
   table_integer(table, (int64_t)row->difference.pairs);
-  for (int k = 0; k < 2; k++) {
-    table_rests_on(table, row->doubts[k]);
-    table_real(table, people && row->untold[k]            ? (double)NAN
-                      : isfinite(row->difference.mean[k]) ? row->difference.mean[k]
-                                                          : row->exponent[k]);
-  }
+  for (int k = 0; k < 2; k++)
+    mean_cells(table, people, row, k);
   table_rests_on(table, &both);
   table_real(table, untold ? (double)NAN : row->difference.difference);
   table_real(table, untold ? (double)NAN : row->difference.half_width);
   table_doubt_cells(table, &both);
-  return !untold && isnan(row->difference.half_width) && row->difference.n[0] > 1 && row->difference.n[1] > 1;
+  return !untold && isnan(row->difference.half_width) && row->difference.side[0].n > 1 && row->difference.side[1].n > 1;
 }
 
 enum { NAMED = 4 }; /* most points in a message */
@@ -47,7 +77,7 @@ struct untold {
 
 static void note_untold(struct untold *untold, const struct ask_pairs_row *row) {
   for (int k = 0; k < 2; k++) {
-    untold->no_interval |= !row->untold[k] && isfinite(row->exponent[k]) && row->difference.n[k] == 0;
+    untold->no_interval |= !row->untold[k] && isfinite(row->exponent[k]) && row->difference.side[k].n == 0;
     if (!row->untold[k])
       continue;
     pooled_exponent_tell(row->untold[k], untold->reason, sizeof untold->reason);
@@ -77,7 +107,7 @@ static status tell_untold(const struct untold *untold, const char *quantity, str
     fprintf(out, "%s point%s%s", k && untold->count[0] ? ";" : "", untold->count[k] == 1 ? "" : "s", untold->points[k]);
     if (untold->count[k] > NAMED)
       fprintf(out, " and %zu more", untold->count[k] - NAMED);
-    fprintf(out, " of %c", 'a' + k);
+    fprintf(out, " of %s", sides[k]);
   }
   if (window > ESTIMATES_FROM_2)
     fprintf(out, ". `-Q beta_%s_%s` takes lighter fragments, too", exponent_method_names[method],
@@ -93,20 +123,21 @@ static status run(const struct command_line *line, struct error *error) {
   ASK_PAIRS pairs = NULL;
   TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &line->choice, &pairs, error));
   TABLE table = table_new(line->format, stdout);
-  const bool people = table_for_people(line->format); /* a narrow head ends its lines at blanks */
-  table_columns(table, people ? (const char *const[]){"point a", "point b", "inputs", "n a", "n b", "pairs", "mean a",
-                                                      "mean b", "difference", "hw95", NULL}
-                              : (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a",
-                                                      "mean_b", "difference", "hw95", NULL});
-  table_doubt_columns(table);
+  const bool people = table_for_people(line->format);
+  const struct sample_range range = views_range(ask_pairs_quantity(pairs));
+  name_columns(table, people, &range);
   struct ask_doubts doubts = {0};
   struct untold untold = {0};
-  bool equal = false, part = false; /* part: runs without a partner */
+  bool equal = false, weak = false, part = false; /* part: runs without a partner */
   for (struct ask_pairs_row row; ask_pairs_next(pairs, &row);) {
+    for (int k = 0; k < 2; k++) {
+      sample_in_range(&row.difference.side[k], &range, 0.95);
+      weak |= row.difference.side[k].weak;
+    }
     equal = print(table, people, &row, &doubts) || equal;
     note_untold(&untold, &row);
     part |= row.difference.pairs &&
-            (row.difference.pairs < row.difference.n[0] || row.difference.pairs < row.difference.n[1]);
+            (row.difference.pairs < row.difference.side[0].n || row.difference.pairs < row.difference.side[1].n);
   }
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
@@ -130,10 +161,11 @@ static status run(const struct command_line *line, struct error *error) {
   if (people) {
     TRY(tell_untold(&untold, ask_pairs_quantity(pairs), error));
     uncertainty_doubts(&doubts, stderr);
-    fprintf(stderr,
-            "clast: %s: b minus a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
-            "runs. It does not hold the error of the resolution\n",
-            ask_pairs_quantity(pairs));
+    fprintf(
+        stderr,
+        "clast: %s: means, and b minus a, with 95 %% intervals over seeds%s; the difference of pairs with one seed, "
+        "or (pairs 0) of independent runs. It does not hold the error of the resolution\n",
+        ask_pairs_quantity(pairs), weak ? " (~: weak, too few runs)" : "");
     if (part)
       fputs("clast: means are of all runs; runs without a partner of their seed are not in the difference\n", stderr);
     if (equal)

@@ -184,6 +184,7 @@ const char *design_axis_show_point(size_t count, const struct design_axis *axes,
     text_append(text, size, "%s%s %s", i ? ", " : "", word ? word + 1 : path,
                 design_axis_show(&axes[i], &value, shown, sizeof shown));
   }
+  text_powers(text, size);
   return text;
 }
 

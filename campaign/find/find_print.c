@@ -13,13 +13,20 @@ static const double LITTLE = 0.9; /* of a width, after twice the runs: 0.71 is u
 static const double APART = 0.2;  /* of the bracket; less than the first values are */
 enum { BINS = 10, SENTENCE = 2048 };
 
+static const char *show_value(const struct find *find, const struct field_value *value, char text[FIND_TEXT]) {
+  design_axis_show(&find->axis, value, text, FIND_TEXT);
+  text_powers(text, FIND_TEXT);
+  return text;
+}
+
 static const char *show(const struct find *find, double x, char text[FIND_TEXT]) {
   struct field_value value;
   find_value(find, x, &value);
-  return design_axis_show(&find->axis, &value, text, FIND_TEXT);
+  return show_value(find, &value, text);
 }
 
-const char *find_show_within(const struct find *find, double x, double low, double high, char text[FIND_TEXT]) {
+/* The value at x with the digits that the interval from `low` to `high` allows. */
+static struct field_value round_within(const struct find *find, double x, double low, double high) {
   struct field_value ends[2], value;
   find_value(find, fmax(low, 0), &ends[0]);
   find_value(find, fmin(high, 1), &ends[1]);
@@ -32,7 +39,12 @@ const char *find_show_within(const struct find *find, double x, double low, doub
     const double places = value.number / step;
     value.number = step * (x == low ? floor(places + 1e-6) : x == high ? ceil(places - 1e-6) : round(places));
   }
-  return design_axis_show(&find->axis, &value, text, FIND_TEXT);
+  return value;
+}
+
+const char *find_show_within(const struct find *find, double x, double low, double high, char text[FIND_TEXT]) {
+  const struct field_value value = round_within(find, x, low, high);
+  return show_value(find, &value, text);
 }
 
 /* ---- the sentence ---- */
@@ -288,8 +300,9 @@ static status tell_resolution(const struct find *find, struct error *error) {
   show(find, x, at);
   TRY(read_resolution(find, store, &place, column, &nearest, error));
   if (one && nearest.verdict == ASK_RESOLUTION_NOT_STUDIED) {
-    find_show_within(find, found->at, found->low, found->high, at);
-    TRY(field_parse(find->input, at, &place, error));
+    const struct field_value shown = round_within(find, found->at, found->low, found->high);
+    TRY(field_parse(find->input, design_axis_show(&find->axis, &shown, at, sizeof at), &place, error));
+    show_value(find, &shown, at);
     TRY(read_resolution(find, store, &place, column, &resolution, error));
   } else {
     resolution = nearest;

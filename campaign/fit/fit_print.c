@@ -55,40 +55,32 @@ static double shown_unit(const struct fit *fit, size_t i, char text[64]) {
   return good ? unit.factor : 1;
 }
 
-/* Decimals of numbers between which a person sees a difference: two digits of it. -1: small numbers have exponents. */
-static int decimals_of(double low, double high) {
-  const double spread = fabs(high - low);
-  return spread > 0 && spread < 1e15 && fmax(fabs(low), fabs(high)) >= 1e-4
-             ? (int)fmin(fmax(1 - floor(log10(spread)), 0), 15)
-             : -1;
-}
-
 static void quantiles_of(const struct fit *fit, size_t i, double unit, double quantile[3]) {
   for (int q = 0; q < 3; q++)
     quantile[q] = fit_number(fit, i, posterior_quantile(&fit->posterior, i, levels[2 * q])) / unit;
 }
 
-/* q05, median, q95. The median has the mark of all three, as the value before an interval has in other tables. */
-static void quantile_cells(struct table *table, const double *quantile, const struct ask_doubts *doubts) {
-  const int decimals = decimals_of(quantile[0], quantile[2]);
-  for (int q = 0; q < 3; q++) {
-    if (q == 1)
-      table_rests_on(table, doubts);
-    table_fixed(table, quantile[q], decimals);
+/* q05, median, q95, for people in one cell. */
+static void quantile_cells(struct table *table, bool people, const double *quantile, const struct ask_doubts *doubts) {
+  if (!people) {
+    table_reals(table, 3, quantile);
+    return;
   }
+  table_rests_on(table, doubts);
+  table_interval(table, quantile[1], quantile[0], quantile[2]);
 }
 
-static void input_cells(const struct fit *fit, size_t i, double unit, struct table *table) {
+static void input_cells(const struct fit *fit, size_t i, double unit, bool people, struct table *table) {
   const double z05 = posterior_coordinate(0.05), z95 = posterior_coordinate(0.95);
   double quantile[3];
   table_reals(table, 2, (const double[]){fit_number(fit, i, z05) / unit, fit_number(fit, i, z95) / unit});
   if (is_outside(fit)) {
-    skip(table, 4);
+    skip(table, people ? 2 : 4);
     return;
   }
   quantiles_of(fit, i, unit, quantile);
-  quantile_cells(table, quantile, &fit->all_doubts);
-  table_real(table, fit->found.kept[i]);
+  quantile_cells(table, people, quantile, &fit->all_doubts);
+  table_fixed(table, fit->found.kept[i], 2);
 }
 
 static status print_inputs(const struct fit *fit, enum table_format format, struct error *error) {
@@ -98,13 +90,13 @@ static status print_inputs(const struct fit *fit, enum table_format format, stru
   table_rare(table);
   table_column(table, "prior_95", NULL);
   table_rare(table);
-  table_columns(table, (const char *const[]){"q05", "median", "q95", "kept", NULL});
+  table_columns(table, (const char *const[]){"median (q05 to q95)", "kept", NULL});
   for (size_t i = 0; i < fit->inputs; i++) {
     table_text(table, row_of(fit, i)->path);
     char unit[64];
     const double one = shown_unit(fit, i, unit);
     table_text(table, unit);
-    input_cells(fit, i, one, table);
+    input_cells(fit, i, one, true, table);
   }
   return table_end(table, error);
 }
@@ -137,29 +129,37 @@ static double predicted(const struct fit *fit, size_t k, double level) {
   return value;
 }
 
-/* The value and its errors: sd_seeds and sd_resolution, in the unit of the measurement. */
-static void value_cells(const struct fit *fit, size_t k, struct table *table) {
+/* The value and its errors: sd_seeds and sd_resolution, in the unit of the measurement. For people the measured error
+ * is in the cell of the value. */
+static void value_cells(const struct fit *fit, size_t k, bool people, struct table *table) {
   const struct observed_datum *datum = &fit->observed->data[k];
   const double slope = datum->ask.kind == ASK_SPECIMENS_COUNT ? 1 + datum->value : 1;
-  table_reals(table, 4,
-              (const double[]){datum->value, datum->error, seeds_of(fit, k), fit->data[k].resolution * slope});
+  const double errors[] = {datum->error, seeds_of(fit, k), fit->data[k].resolution * slope};
+  if (!people) {
+    table_real(table, datum->value);
+    table_reals(table, 3, errors);
+    return;
+  }
+  table_interval(table, datum->value, datum->value - errors[0], datum->value + errors[0]);
+  for (int i = 1; i < 3; i++)
+    table_interval(table, errors[i], NAN, NAN);
 }
 
 /* *below: does the table show this column? */
 static status print_data(const struct fit *fit, enum table_format format, bool *below, struct error *error) {
   TABLE table = table_new(format, stdout);
   char label[LABEL];
-  table_columns(table, (const char *const[]){"measured", "value", "error", "sd_seeds", "sd_resolution", "q05", "median",
-                                             "q95", "below", NULL});
+  table_columns(table, (const char *const[]){"measured", "value \xc2\xb1 error", "sd_seeds", "sd_resolution",
+                                             "median (q05 to q95)", "below", NULL});
   for (size_t k = 0; k < fit->observed->datum_count; k++) {
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, label);
-    value_cells(fit, k, table);
+    value_cells(fit, k, true, table);
     double quantile[3];
     for (int q = 0; q < 3; q++)
       quantile[q] = predicted(fit, k, levels[2 * q]);
-    quantile_cells(table, quantile, &fit->doubts[k]);
-    table_real(table, share_below(fit, k, fit->data[k].value));
+    quantile_cells(table, true, quantile, &fit->doubts[k]);
+    table_interval(table, share_below(fit, k, fit->data[k].value), NAN, NAN);
   }
   TRY(table_end(table, error));
   *below = !table_hides(table, "below");
@@ -178,7 +178,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
     table_text(table, "input");
     table_text(table, row_of(fit, i)->path);
     table_text(table, row_of(fit, i)->unit);
-    input_cells(fit, i, 1, table);
+    input_cells(fit, i, 1, false, table);
     skip(table, 5);
     table_doubt_cells(table, &fit->all_doubts);
   }
@@ -192,7 +192,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
     for (int q = 0; q < 3; q++)
       table_real(table, predicted(fit, k, levels[2 * q]));
     skip(table, 1);
-    value_cells(fit, k, table);
+    value_cells(fit, k, false, table);
     table_real(table, share_below(fit, k, fit->data[k].value));
     table_doubt_cells(table, &fit->doubts[k]);
   }
@@ -336,12 +336,10 @@ static void tell_determined(const struct fit *fit, FILE *out) {
   for (size_t i = 0; i < p; i++) {
     double quantile[3];
     quantiles_of(fit, i, shown_unit(fit, i, unit), quantile);
-    const int decimals = decimals_of(quantile[0], quantile[2]);
-    char text[3][40];
-    for (int q = 0; q < 3; q++)
-      snprintf(text[q], sizeof text[q], decimals < 0 ? "%.*g" : "%.*f", decimals < 0 ? 3 : decimals, quantile[q]);
-    text_append(found, sizeof found, "%s%s %s%s%s (%s to %s)", *found ? ", " : "", row_of(fit, i)->path, text[1],
-                strcmp(unit, "1") == 0 || !*unit ? "" : " ", strcmp(unit, "1") == 0 ? "" : unit, text[0], text[2]);
+    char text[UNCERTAINTY_TEXT];
+    uncertainty_interval(quantile[1], quantile[0], quantile[2], text);
+    text_append(found, sizeof found, "%s%s %s%s%s", *found ? ", " : "", row_of(fit, i)->path, text, *unit ? " " : "",
+                unit);
     as_wide = as_wide || fit->found.kept[i] >= AS_WIDE;
   }
   words_print(out, "", "%s: median and 90 %% interval.", found);

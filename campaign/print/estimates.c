@@ -94,10 +94,9 @@ static status row_for_programs(struct printing *printing, const struct ask_point
 
 static void columns_for_people(struct printing *printing) {
   struct table *table = printing->table;
-  table_column(table, "point_id", NULL);
   for (size_t i = 0; i < printing->axes; i++)
     table_key(table, &printing->axis[i]);
-  table_columns(table, (const char *const[]){"runs", "M_1/M", "\xc2\xb1res M_1/M", "window", "n", "beta ML",
+  table_columns(table, (const char *const[]){"point_id", "runs", "M_1/M", "\xc2\xb1res M_1/M", "window", "n", "beta ML",
                                              "beta ML_hw95", "beta ML_weak", "\xc2\xb1res beta", "beta LSQ",
                                              "beta LSQ_hw95", "beta LSQ_weak", NULL});
 }
@@ -141,9 +140,9 @@ static status row_for_people(struct printing *printing, const struct ask_points_
   const bool first = window == 0; /* only the point's first row shows its inputs and runs */
   if (first) {
     char runs[64] = "";
-    table_integer(table, row->point_id);
     for (size_t i = 0; i < printing->axes; i++)
       table_value(table, &row->inputs[i]);
+    table_integer(table, row->point_id);
     text_append(runs, sizeof runs, "%lld", (long long)row->n);
     printing->seen.failed |= row->failed > 0;
     if (row->failed)

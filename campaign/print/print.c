@@ -109,8 +109,10 @@ static void answer(const char *name, double value, enum condition_mark mark, con
            : whole                    ? "%.0f%s"
                                       : "%.4g%s",
            value, mark == CONDITION_MARKED ? UNCERTAINTY_MARK : "");
+  text_powers(text, sizeof text);
+  const int cell = 10 + (int)(strlen(text) - text_characters(text, SIZE_MAX));
   const bool is_path = strchr(name, '.') != NULL; /* an engine's result */
-  snprintf(head, sizeof head, is_path ? "%-20s %-10s " : "%-14s %-10s ", name, text);
+  snprintf(head, sizeof head, is_path ? "%-20s %-*s " : "%-14s %-*s ", name, cell, text);
   words_print(stdout, head, "%s", says);
 }
 
@@ -127,6 +129,7 @@ static void answer_result(const struct engine_kind *kind, const struct run_resul
     field_get(beside, result->result, &exact);
   if (isfinite(exact.number))
     text_append(says, sizeof says, "exact: %.4g; ", exact.number);
+  text_powers(says, sizeof says);
   const char *of = strstr(row->doc, ": "); /* "Piston: mean pressure" */
   text_sentence(of ? of + 2 : row->doc, says + strlen(says), sizeof says - strlen(says));
   answer(row->path, value.number, condition_mark(kind->conditions, result->outcome.warnings, row->path), says);
@@ -161,6 +164,7 @@ static void print_fragments(const struct scene *scene, const struct run_result *
   snprintf(says, sizeof says, "%lld %s; the spectrum is complete from %.3g %s on", (long long)o->single_count,
            scene->kind->single ? scene->kind->single : "of one grain or particle", o->complete_mass,
            ask_pool_mass_unit(scene->kind->dimensions));
+  text_powers(says, sizeof says);
   answer("fragments", (double)o->fragment_count, condition_mark(conditions, o->warnings, OUTCOME_NAME(fragment_count)),
          says);
   const struct estimate *fit = NULL;
@@ -183,7 +187,10 @@ static void print_answers(const struct scene *scene, int64_t seed, const struct 
   const struct condition *conditions = scene->kind->conditions;
   struct field_value state;
   field_get(field_find(&outcome_table, OUTCOME_NAME(state), NULL), o, &state);
-  printf("%s, seed %lld: %s after %.4g s in %lld steps\n", scene->name, (long long)seed, state.text, o->time,
+  char time[64];
+  snprintf(time, sizeof time, "%.4g", o->time);
+  text_powers(time, sizeof time);
+  printf("%s, seed %lld: %s after %s s in %lld steps\n", scene->name, (long long)seed, state.text, time,
          (long long)o->steps);
   if (o->state == OUTCOME_INVALID)
     return;
@@ -355,10 +362,10 @@ static void tell_shape(size_t pools, size_t agree, size_t differ, const struct m
   else if (agree + differ == 0)
     words_print(stdout, "",
                 judged[0] == judged[1]
-                    ? "no verdict on the shape: it needs %zu%s runs of two fragments or more from the mass in column "
-                      "`from` on, and has %zu"
-                    : "no verdict on the shape: it needs %zu%s runs of two fragments or more from the mass in column "
-                      "`from` on; the rows have %zu to %zu",
+                    ? "no verdict on the shape: it needs %zu%s runs of two fragments or more from the lightest "
+                      "mass on, and has %zu"
+                    : "no verdict on the shape: it needs %zu%s runs of two fragments or more from the lightest "
+                      "mass on; the rows have %zu to %zu",
                 match->needed, most_needed(match), judged[0], judged[1]);
   else if (pools > 1) {
     char rest[160] = "";
@@ -370,7 +377,7 @@ static void tell_shape(size_t pools, size_t agree, size_t differ, const struct m
                   few->needed, most_needed(few));
     if (nothing)
       text_append(rest, sizeof rest, "; where there is no distance, see below");
-    words_print(stdout, "", "agrees in shape with %zu of %zu rows (runs_as_far %.2g or more), differs from %zu%s",
+    words_print(stdout, "", "agrees in shape with %zu of %zu rows (runs as far %.2g or more), differs from %zu%s",
                 agree, pools, FAR, differ, rest);
   } else
     words_print(stdout, "", "%s in shape, whatever the number of fragments: %.2g %% %s (differs: below %.2g %%)",
@@ -454,8 +461,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     uncertainty_doubts(&sum, stderr);
     fprintf(
         stderr,
-        "clast: the measured and all simulated spectra are complete from %.3g %s on; from: %s. distance: "
-        "Kolmogorov's, of %s. runs_as_far: share of the runs that are as far from the "
+        "clast: the measured and all simulated spectra are complete from %.3g %s on; lightest mass: %s. distance: "
+        "Kolmogorov's, of %s. runs as far: share of the runs that are as far from the "
         "others as "
         "the measured one, or of draws of several runs of few fragments (below 0.05 speaks against "
         "the point; -: too few runs of two fragments). One measured fragment or class has no shape, and no distance\n",
@@ -463,7 +470,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
         measured->weighed ? "the shares of mass" : "the shapes");
     if (nothing)
       fprintf(stderr,
-              "clast: no distance%s: from the mass in column `from` on there is %s%s%s%s. The heaviest "
+              "clast: no distance%s: from the lightest mass on there is %s%s%s%s. The heaviest "
               "measured %s %.3g %s, the heaviest simulated fragment has %.3g %s\n",
               told ? " in some rows" : "", empty ? "no simulated fragment" : "", empty && lone ? ", or " : "",
               lone ? "at most one measured " : "",

@@ -24,7 +24,7 @@ static void row(const struct printing *printing, const char *name, double value,
   table_text(printing->table, name);
   if (strcmp(name, "runs") != 0)
     table_rests_on(printing->table, &printing->pool->doubts);
-  table_reals(printing->table, 3, (const double[]){value, low, high});
+  table_interval(printing->table, value, low, high);
   table_doubt_cells(printing->table, &printing->pool->doubts);
 }
 
@@ -59,7 +59,7 @@ static void print_scatter(const struct printing *printing, struct scatter *s) {
   for (int q = 0; q < SCATTER_QUANTILES; q++)
     row(printing, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
   if (!printing->people || isfinite(s->dip_share)) {
-    row(printing, printing->people ? "dip: distance from one peak" : "dip", s->dip, NAN, NAN);
+    row(printing, printing->people ? "distance from one peak" : "dip", s->dip, NAN, NAN);
     row(printing, printing->people ? "p of one peak" : "dip p", s->dip_share, NAN, NAN);
   }
   if (isfinite(s->between)) {
@@ -80,7 +80,8 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
   TABLE table = table_new(format, stdout);
   struct printing printing = {.people = table_for_people(format), .choice = choice, .table = table, .pools = &pools};
   print_pool_columns(table, &pools);
-  table_columns(table, (const char *const[]){"statistic", "value", "low", "high", NULL});
+  table_column(table, "statistic", NULL);
+  table_interval_columns(table, "value", "low", "high");
   table_doubt_columns(table);
   struct ask_doubts doubts = {0};
   bool several = false; /* a pool has more than one point */
@@ -97,7 +98,8 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
     uncertainty_doubts(&doubts, stderr);
     words_print(
         stderr, "",
-        "clast: values of %s. low and high: 95 %% intervals over runs; of a mode, the values that belong to it. Modes "
+        "clast: values of %s. \xc2\xb1 and (a to b): 95 %% intervals over runs; of a mode, the values that belong to "
+        "it. Modes "
         "are peaks; p of one peak below 0.05: the runs have two. Fewer than %d runs tell neither modes nor skewness",
         pools.quantity, SCATTER_SHAPE_RUNS);
   }
@@ -375,7 +377,8 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
   static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
                                                    "whole"};
   TABLE table = table_new(format, stdout);
-  table_columns(table, (const char *const[]){"part", "variance", "share", "low", "high", NULL});
+  table_columns(table, (const char *const[]){"part", "variance", NULL});
+  table_interval_columns(table, "share", "low", "high");
   table_doubt_columns(table);
   for (size_t i = 0; i < cells->axes + SCATTER_PARTS; i++) {
     table_text(table, i < cells->axes ? cells->column[i] : names[i - cells->axes]);
@@ -383,7 +386,7 @@ static status print_parts(const struct run_cells *cells, const struct scatter_pa
     table_real(table, parts[i].variance);
     table_rests_on(table, &cells->doubts);
     const double share = parts[i].share, half_width = parts[i].half_width;
-    table_reals(table, 3, (const double[]){inside(share), inside(share - half_width), inside(share + half_width)});
+    table_interval(table, inside(share), inside(share - half_width), inside(share + half_width));
     table_doubt_cells(table, &cells->doubts);
   }
   return table_end(table, error);
@@ -420,8 +423,8 @@ status print_variance(struct store *store, const struct scatter_choice *choice, 
         "clast: %zu points with %zu seeds each, which count alike. Share: of the variance of these points alone "
         "(`clast sensitivity`: of all points drawn like them). An input: "
         "variance of its means over the other "
-        "inputs%s what the inputs together have beyond their sum is their interaction. Low, high: 95 %% interval "
-        "over seeds",
+        "inputs%s what the inputs together have beyond their sum is their interaction. \xc2\xb1 and (a to b): 95 %% "
+        "interval over seeds",
         cells.count, runs,
         isnan(parts[0].share) ? ", which only a full grid tells: `clast sensitivity STORE.db` ranks those of other "
                                 "designs;"
@@ -653,9 +656,7 @@ static void print_index(const struct from_points *p, size_t a, struct table *tab
   table_text(table, seeds ? "seed" : p->cells.column[a]);
   for (int s = 0; s < 2; s++) {
     table_rests_on(table, &p->cells.doubts);
-    table_fixed(table, share[s]->estimate, 3);
-    table_fixed(table, share[s]->low, 3);
-    table_fixed(table, share[s]->high, 3);
+    table_interval(table, share[s]->estimate, share[s]->low, share[s]->high);
   }
   if (is_told(p, a) && index->first_rank < index->last_rank)
     text_append(text, sizeof text, "%zu to %zu", index->first_rank, index->last_rank);
@@ -678,14 +679,10 @@ static status print_indices(struct from_points *p, enum table_format format, str
   TABLE table = table_new(format, stdout);
   const bool means = p->data.most > 1 && tells_means(p), people = table_for_people(format);
   table_column(table, "input", NULL);
-  for (int s = 0; s < 2; s++)
-    for (int c = 0; c < 3; c++) {
-      static const char *const names[2][3] = {{"of_means", "means_low", "means_high"},
-                                              {"of_runs", "runs_low", "runs_high"}};
-      table_column(table, people && s == 1 && c == 0 && at_one_seed(p) ? "share at this seed" : names[s][c], NULL);
-      if (s == 0 ? !means : means && c > 0)
-        table_rare(table);
-    }
+  table_interval_columns(table, "of_means", "means_low", "means_high");
+  if (!means)
+    table_rare(table);
+  table_interval_columns(table, people && at_one_seed(p) ? "share at this seed" : "of_runs", "runs_low", "runs_high");
   table_columns(table, (const char *const[]){"rank", "not_told", NULL});
   table_doubt_columns(table);
   for (size_t i = 0; i < p->cells.axes; i++)

@@ -43,6 +43,15 @@ static const char *const headings[][2] = {{"surplus", "after the rule's stop"},
                                           {"not_told", "reason for -"},
                                           {"of_means", "share of means"},
                                           {"of_runs", "share of runs"},
+                                          {"runs_as_far", "runs as far"},
+                                          {"from", "lightest mass"},
+                                          {"cutoff_p", "p of cut-off"},
+                                          {"open_cutoff_p", "p of cut-off, largest included"},
+                                          {"lognormal_p", "p of lognormal"},
+                                          {"given_up", "failed at all attempts"},
+                                          {"largest_drift", "largest energy error"},
+                                          {"silent_drift", "error above 1 % without warning"},
+                                          {"rule_unmet", "points that reached seeds.max too early"},
                                           {"frontier", "best"}};
 
 /* What people need of columns with such a name, or with such an ending. */
@@ -67,7 +76,10 @@ static const struct {
     {"last_started", RARE},
     {"last_ended", RARE},
     {"command", RARE},
+    {"tillotson_A", RARE},
     {"_mean", MEAN},
+    {"mean a", MEAN},
+    {"mean b", MEAN},
     {"difference", MEAN},
     {"_sd", RARE},
     {"_se", RARE},
@@ -239,6 +251,10 @@ void table_range(struct table *table, struct sample_range range) {
     table->columns[table->column_count - 1].range = range;
 }
 
+void table_interval_columns(struct table *table, const char *value, const char *low, const char *high) {
+  table_columns(table, (const char *const[]){value, table->people ? NULL : low, high, NULL});
+}
+
 void table_rare(struct table *table) {
   if (!table->broken && table->people)
     table->columns[table->column_count - 1].role = RARE;
@@ -358,8 +374,17 @@ static struct column *widest(const struct table *table, bool texts) {
 /* Until the table fits: gives headings several lines, then makes columns of texts narrower. */
 static void make_narrow(struct table *table, size_t room) {
   struct column *column;
-  while (total_width(table) > room && (column = widest(table, false)))
-    column->width = column->narrow;
+  while (total_width(table) > room && (column = widest(table, false))) { /* no narrower than it takes: few lines */
+    const size_t gain = column->width - column->narrow, over = total_width(table) - room;
+    size_t need = column->narrow;
+    column->width -= gain < over ? gain : over;
+    for (const char *head = column->head; *head;) { /* without the room that its lines leave */
+      const size_t bytes = line_of(head, column->width, false), width = text_characters(head, bytes);
+      need = width > need ? width : need;
+      head += bytes + (head[bytes] == ' ');
+    }
+    column->width = need;
+  }
   while (total_width(table) > room && (column = widest(table, true)))
     column->width--;
 }
@@ -589,7 +614,6 @@ struct cell {
   double number;
 };
 
-/* Keeps a cell for people, with its mark. Of a half width, its value's cell becomes "value +- half width". */
 /* Gives a kept cell another text. */
 static void replace(struct table *table, struct kept *kept, const char *text, size_t digits) {
   free(kept->text);
@@ -599,6 +623,7 @@ static void replace(struct table *table, struct kept *kept, const char *text, si
     kept->text = strdup("");
 }
 
+/* Keeps a cell for people, with its mark. Of a half width, its value's cell becomes "value +- half width". */
 static void keep(struct table *table, const struct cell *cell) {
   const struct column *column = &table->columns[table->cell];
   char text[2 * UNCERTAINTY_TEXT + 16];
@@ -782,7 +807,19 @@ void table_fixed(struct table *table, double number, int decimals) {
     text_append(shown, sizeof shown, error ? "%.2g" : "%.5g", number);
   else
     text_append_fixed(shown, sizeof shown, number, decimals);
+  if (strchr(shown, 'e'))
+    text_powers(shown, sizeof shown);
   add_cell(table, (struct cell){CELL_NUMBER, digits, shown, number});
+}
+
+void table_interval(struct table *table, double value, double low, double high) {
+  char shown[UNCERTAINTY_TEXT];
+  if (!table->people || isnan(value)) {
+    table_reals(table, table->people ? 1 : 3, (const double[]){value, low, high});
+    return;
+  }
+  uncertainty_interval(value, low, high, shown);
+  add_cell(table, (struct cell){CELL_NUMBER, "", shown, value});
 }
 
 static status verdict(const FILE *out, int write_error, struct error *error) {

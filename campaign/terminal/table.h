@@ -44,6 +44,9 @@ void table_columns(struct table *table, const char *const *names);
 void table_key(struct table *table, const struct ask_column *input);
 /* The last column is the half width of a mean of values in this range. */
 void table_range(struct table *table, struct sample_range range);
+/* A value and the ends of its interval: for programs three columns, for people one, as uncertainty_interval(). */
+void table_interval_columns(struct table *table, const char *value, const char *low, const char *high);
+void table_interval(struct table *table, double value, double low, double high);
 /* People see the last column only with --all. */
 void table_rare(struct table *table);
 
@@ -98,11 +101,14 @@ status table_text_only(enum table_format format, const char *what, struct error 
 enum { UNCERTAINTY_TEXT = 400 };
 
 /* "0.349 ± 0.003": the error has one digit, or two after a leading 1; the value has as many decimals. Without a half
- * width above 0: "0.349". Below 0.001: "(3.3 ± 0.2)e-05". */
+ * width above 0: "0.349". Below 0.001: "(3.3 ± 0.2)×10^-5". */
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]);
 
 /* The same with the interval, "0.11 (0 to 0.27)", where the half width passes an end of the range. */
 void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]);
+/* The same of an interval with its ends: "0.35 ± 0.02" where the value is in its middle. NaN: an end that is not known;
+ * without both, three digits. */
+void uncertainty_interval(double value, double low, double high, char text[UNCERTAINTY_TEXT]);
 /* Writes "1.000 ≥ 0.905" if the value is that of equal runs at the upper end of a share; low: what they bound. False:
  * it is another value. */
 #define UNCERTAINTY_ALL_ONE "1.000 \xe2\x89\xa5 a: all runs are 1, and the mean is at least a"

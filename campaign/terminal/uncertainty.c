@@ -13,21 +13,27 @@ static const double MOST_DIGITS = 1e15; /* a double has no more digits than that
 static const double SMALL = 1e-3;       /* below it a common power of ten is shorter than zeros */
 static const double LARGE = 1e6;        /* from it on, too, if the error leaves THOUSANDS zeros or more */
 enum { THOUSANDS = 3 };
+static const double ONE_LEADS = 1.95; /* times its decade: from here on two digits begin with a 2 */
 
 /* Decade of the last digit that an error allows: one digit of the error, two after a leading 1. Rounding moves it by at
  * most a quarter. */
 static double last_decade(double half_width) {
   const double leading = floor(log10(half_width));
-  return half_width < 2 * pow(10, leading) ? leading - 1 : leading;
+  return half_width < ONE_LEADS * pow(10, leading) ? leading - 1 : leading;
+}
+
+static void write_number(const char *format, double value, char text[UNCERTAINTY_TEXT]) {
+  snprintf(text, UNCERTAINTY_TEXT, format, value);
+  text_powers(text, UNCERTAINTY_TEXT);
 }
 
 void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_TEXT]) {
   if (!(half_width > 0)) {
-    snprintf(text, UNCERTAINTY_TEXT, "%.4g", value);
+    write_number("%.4g", value, text);
     return;
   }
   const double size = fmax(fabs(value), half_width);
-  if (size < SMALL || (size >= LARGE && last_decade(half_width) >= THOUSANDS)) { /* (3.3 +- 0.2)e-05 */
+  if (size < SMALL || (size >= LARGE && last_decade(half_width) >= THOUSANDS)) { /* (3.3 +- 0.2)×10^-5 */
     double decade = floor(log10(size));
     char digits[UNCERTAINTY_TEXT];
     uncertainty_number(value / pow(10, decade), half_width / pow(10, decade), digits);
@@ -35,7 +41,10 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
       decade++;
       uncertainty_number(value / pow(10, decade), half_width / pow(10, decade), digits);
     }
-    snprintf(text, UNCERTAINTY_TEXT, "(%.40s)e%+03d", digits, (int)decade);
+    snprintf(text, UNCERTAINTY_TEXT,
+             "(%.40s)\xc3\x97"
+             "10^%d",
+             digits, (int)decade);
     return;
   }
   double leading = last_decade(half_width);
@@ -43,6 +52,7 @@ void uncertainty_number(double value, double half_width, char text[UNCERTAINTY_T
     leading--;
   if (leading < -MOST_DECIMALS || leading > MOST_DECIMALS || fabs(value) >= MOST_DIGITS) {
     snprintf(text, UNCERTAINTY_TEXT, "%.4g \xc2\xb1 %.2g", value, half_width);
+    text_powers(text, UNCERTAINTY_TEXT);
     return;
   }
   const int decimals = leading < 0 ? (int)-leading : 0;
@@ -68,27 +78,45 @@ static void write_power(double last, double number, char text[32]) {
   snprintf(text, 32, "%.*g", leading > last ? (int)(leading - last) + 1 : 1, number);
 }
 
-void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]) {
-  const double low = fmax(value - half_width, range->least), high = fmin(value + half_width, range->most);
-  const bool cut = value - half_width < range->least || value + half_width > range->most;
-  if (!(half_width > 0) || !cut || !(value >= range->least && value <= range->most)) {
-    uncertainty_number(value, half_width, text);
-    return;
-  }
+/* "0.11 (0 to 0.27)". One end: "0.11 (to 0.27)", "0.11 (0.05 on)". */
+static void write_interval(double value, double low, double high, char text[UNCERTAINTY_TEXT]) {
   const double size = fmax(fabs(low), fabs(high));
   double last = last_decade(fmax(high - value, value - low));
-  if (value < 2 * pow(10, last)) /* 0.14 (0 to 1), not 0.1 */
+  if (fmin(high - value, value - low) < ONE_LEADS * pow(10, last)) /* 0.14 (0 to 1), not 0.1 */
     last--;
-  if (last < -MOST_DECIMALS || last > MOST_DECIMALS || size < SMALL || size >= MOST_DIGITS) {
-    snprintf(text, UNCERTAINTY_TEXT, "%.2g (%.2g to %.2g)", value, low, high);
-    return;
-  }
   char parts[3][32];
+  const double number[3] = {value, low, high};
   const bool large = size >= LARGE && last >= THOUSANDS; /* 3e+07 (0 to 5e+07) */
-  (large ? write_power : write_to)(last, value, parts[0]);
-  (large ? write_power : write_end)(last, low, parts[1]);
-  (large ? write_power : write_end)(last, high, parts[2]);
-  snprintf(text, UNCERTAINTY_TEXT, "%s (%s to %s)", parts[0], parts[1], parts[2]);
+  const bool short_form = !(last >= -MOST_DECIMALS && last <= MOST_DECIMALS) || size < SMALL || size >= MOST_DIGITS;
+  for (int i = 0; i < 3; i++)
+    if (short_form)
+      snprintf(parts[i], sizeof parts[i], "%.2g", number[i]);
+    else
+      (large ? write_power : i == 0 ? write_to : write_end)(last, number[i], parts[i]);
+  snprintf(text, UNCERTAINTY_TEXT,
+           isnan(low)    ? "%s (%sto %s)"
+           : isnan(high) ? "%s (%s on)"
+                         : "%s (%s to %s)",
+           parts[0], isnan(low) ? "" : parts[1], parts[2]);
+  text_powers(text, UNCERTAINTY_TEXT);
+}
+
+void uncertainty_interval(double value, double low, double high, char text[UNCERTAINTY_TEXT]) {
+  const double below = value - low, above = high - value;
+  if (isnan(value) || (isnan(low) && isnan(high)))
+    write_number(value == rint(value) && fabs(value) < LARGE ? "%.0f" : "%.3g", value, text);
+  else if (fabs(above - below) <= 1e-6 * (above + below))
+    uncertainty_number(value, (above + below) / 2, text);
+  else
+    write_interval(value, low, high, text);
+}
+
+void uncertainty_cell(double value, double half_width, const struct sample_range *range, char text[UNCERTAINTY_TEXT]) {
+  const bool cut = value - half_width < range->least || value + half_width > range->most;
+  if (!(half_width > 0) || !cut || !(value >= range->least && value <= range->most))
+    uncertainty_number(value, half_width, text);
+  else
+    write_interval(value, fmax(value - half_width, range->least), fmin(value + half_width, range->most), text);
 }
 
 bool uncertainty_all_one(double value, double half_width, double low, const struct sample_range *range,

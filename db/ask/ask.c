@@ -352,6 +352,18 @@ struct query_value ask_columns_value(const struct ask_column *column, const stru
   return shown;
 }
 
+void ask_columns_show(const struct ask_column *column, const struct query_value *value, char *text, size_t size) {
+  const struct query_value shown = ask_columns_value(column, value);
+  const bool whole = shown.real == rint(shown.real) && fabs(shown.real) < 1e6;
+  if (shown.kind == QUERY_TEXT || shown.kind == QUERY_NULL) {
+    snprintf(text, size, "%s", shown.kind == QUERY_TEXT ? shown.text : "off");
+    return;
+  }
+  const char *unit = strcmp(column->unit, "1") == 0 ? "" : column->unit;
+  snprintf(text, size, whole ? "%.0f%s%s" : "%.3g%s%s", shown.real, *unit ? " " : "", unit);
+  text_powers(text, size);
+}
+
 /* Rows of results are for all engines; of one in the plane, masses are per metre of thickness. With runs of both kinds
  * the column has no unit. */
 static status per_metre(struct store *store, char *unit, size_t size, struct error *error) {
@@ -660,13 +672,10 @@ status ask_points_label(struct store *store, struct store *units, int64_t point_
     if (answer_value(written, place).kind == QUERY_TEXT)
       ask_columns_write_in(&column, answer_text(written, place));
     TRY(answer_status(&other));
-    const struct query_value value = answer_value(&answer, 1), shown = ask_columns_value(&column, &value);
-    char number[64], item[256], unit[sizeof column.unit + 8];
-    text_unit(column.unit, unit, sizeof unit);
-    snprintf(number, sizeof number, "%.3g", shown.real);
-    text_powers(number, sizeof number);
-    const int length = snprintf(item, sizeof item, "%s%s %.63s%s%s", used ? ", " : "", word ? word + 1 : path,
-                                shown.kind == QUERY_TEXT ? shown.text : number, *unit ? " " : "", unit);
+    const struct query_value value = answer_value(&answer, 1);
+    char shown[128], item[256];
+    ask_columns_show(&column, &value, shown, sizeof shown);
+    const int length = snprintf(item, sizeof item, "%s%s %s", used ? ", " : "", word ? word + 1 : path, shown);
     if (length <= 0 || (size_t)length >= sizeof item || used + (size_t)length >= size)
       continue; /* inputs that do not fit are left out */
     memcpy(text + used, item, (size_t)length + 1);

@@ -185,6 +185,8 @@ status ask_columns_written(struct store *store, const char *column, struct ask_c
 void ask_columns_write_in(struct ask_column *column, const char *unit);
 /* A value of the store in the unit of the column: numbers are divided by its factor; other kinds do not change. */
 struct query_value ask_columns_value(const struct ask_column *column, const struct query_value *value);
+/* The same with the unit, as people write it: "5×10^33 m^-3", "2000 J/m", "basalt", "off". */
+void ask_columns_show(const struct ask_column *column, const struct query_value *value, char *text, size_t size);
 
 /* Unit of one column in `unit`; "" for a pure number or an unknown column. */
 status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error);

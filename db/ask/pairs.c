@@ -225,7 +225,7 @@ static status compare_common(struct store *const store[2], struct side side[2], 
   enum estimates_window window;
   TRY(estimates_named(quantity, &exponent, &method, &window, error));
   if (!exponent || difference->pairs == 0 ||
-      (difference->pairs == difference->n[0] && difference->pairs == difference->n[1]))
+      (difference->pairs == difference->side[0].n && difference->pairs == difference->side[1].n))
     return STATUS_OK;
   OWNED char *where = common_seeds(side, &group[0], &group[1]);
   if (!where)
@@ -233,7 +233,7 @@ static status compare_common(struct store *const store[2], struct side side[2], 
   for (int k = 0; k < 2; k++)
     TRY(read_exponent(store[k], method, window, where, &side[k], &group[k], error));
   const struct difference common = difference_of(side, &group[0], &group[1]);
-  if (common.n[0] == 0 || common.n[1] == 0)
+  if (common.side[0].n == 0 || common.side[1].n == 0)
     *difference = common; /* no interval */
   difference->difference = common.difference;
   difference->half_width = common.half_width;

@@ -138,16 +138,10 @@ static status write_label(struct ask_pools *pools, struct error *error) {
     return ask_points_label(pools->store, pools->store, pool->point[0], pool->label, sizeof pool->label, error);
   snprintf(pool->label, sizeof pool->label, "%s", pools->axes ? "" : "all points");
   for (size_t a = 0; a < pools->axes; a++) {
-    char unit[72] = "", value[ASK_POOL_TEXT] = "off";
+    char value[ASK_POOL_TEXT];
     struct ask_column written;
-    const struct query_value *input = &pool->input[a];
     TRY(ask_columns_written(pools->store, pools->column[a], &written, error));
-    text_unit(written.unit, unit, sizeof unit);
-    if (input->kind == QUERY_TEXT)
-      snprintf(value, sizeof value, "%s", input->text);
-    else if (input->kind != QUERY_NULL)
-      snprintf(value, sizeof value, "%.3g", input->real / written.factor);
-    text_powers(value, sizeof value);
+    ask_columns_show(&written, &pool->input[a], value, sizeof value);
     char column[sizeof pools->column[a]];
     snprintf(column, sizeof column, "%s", pools->column[a]);
     char *word = strrchr(column, '_');
@@ -155,8 +149,7 @@ static status write_label(struct ask_pools *pools, struct error *error) {
       *word = '\0';
       word = strrchr(column, '_');
     }
-    text_append(pool->label, sizeof pool->label, "%s%s %s%s%s", a ? ", " : "", word ? word + 1 : column, value,
-                *unit ? " " : "", unit);
+    text_append(pool->label, sizeof pool->label, "%s%s %s", a ? ", " : "", word ? word + 1 : column, value);
   }
   return STATUS_OK;
 }

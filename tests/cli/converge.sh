@@ -128,7 +128,7 @@ prints "standard *"; prints "reference ref"
 same "$(number named.db "select count(*) from convergence where knob = 'settings' and error > 0")" 3 "errors of named settings"
 same "$(number named.db "select count(*) from resolution")" 3 "points with a known error"
 expect 0 "$clast" simulate named.yaml@draft --set body.diameter='8 cm' --all
-prints "2e-06"
+prints "2×10^-6"
 expect 66 "$clast" simulate named.yaml@drat
 says "standard, draft, reference"
 printf 'name: named\nscene: ./named.yaml@draft\nset: {body.diameter: 8 cm}\nseeds: {per_point: 1}\n' >draft.yaml
@@ -525,7 +525,7 @@ says "has 3 seeds, this one 2, but another level: it takes its place. --seeds 3"
 same "$(number coarse.db "select max(n) from convergence where knob = 'grains' and base")" 2 "seeds of the study that took its place"
 # The pages have the columns by the names of the table, and results where they speak of results.
 tr -d '\n' <out >heads; cat err >>heads
-for column in bias error best correlation "pays from correlation" "share of upper mode"; do
+for column in bias error best correlation "worth it above this correlation" "share of upper mode"; do
   tr -s ' \n' ' ' <heads | grep -qF "$column" || fail "no column $column"
   grep -qF "**$column**" "$source/campaign/README.md" || fail "the page does not name the column $column"
 done

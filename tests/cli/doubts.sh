@@ -57,7 +57,7 @@ marked() { # marked RUNS COMMAND...
   local runs=$1
   shift
   expect 0 "$clast" "$@"
-  grep -Eq '[0-9s] !( |$)' out || fail "no mark: $*"
+  grep -Eq '[0-9s)] !( |$)' out || fail "no mark: $*"
   says "marked (!), $runs runs: step: fidelity.time_step over the longest stable step is above 0.25 (clast explain step)"
   same "$(grep -c 'marked (!)' err)" 1 "sentences"
 }
@@ -192,7 +192,7 @@ assert few["strength_mean"] == "" and few["strength_n"] == "0" and few["strength
 assert float(enough["strength_mean"]) > 2e7 and enough["strength_n"] == "3" and enough["doubts"] == ""
 PY
 expect 0 "$clast" stats withheld.db -Q strength
-grep -Eq ' [0-9.e+()]+ \(3\) !' out || fail "a mean of three of six runs"
+grep -Eq ' [0-9.×^()]+ \(3\) !' out || fail "a mean of three of six runs"
 expect 0 "$clast" query withheld.db "select count(strength), sum(withheld(engine, warnings, 'strength')), (select count(strength) from result_dem) from runs" --csv
 prints "3,3,6" # the store keeps the raw values
 ! grep -q "in doubt" err || fail "a question about the words is told of them"

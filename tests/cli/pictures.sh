@@ -51,7 +51,7 @@ PY
 ok "distances from a measured spectrum"
 expect 0 "$clast" spectrum small.db --point 1 --with measured.csv # the first line answers
 head -2 out | tr '\n' ' ' | grep -Eq '^no verdict on the shape: it needs 20 runs .* has [0-3] ' || fail "no word on 3 runs"
-tr '\n' ' ' <out | grep -q 'from the mass in column `from` on, and has' || fail "runs from which mass on"
+tr '\n' ' ' <out | grep -q 'from the lightest mass on, and has' || fail "runs from which mass on"
 # How much the specimen weighed is not known where light fragments were not collected.
 printf 'mass (kg/m)\n3\n2\n' >light.csv
 expect 0 "$clast" spectrum small.db --point 1 --with light.csv
@@ -62,10 +62,10 @@ grep -q "size of the specimen" err && fail "a part of the fragments is taken for
 # Why there is no distance: what is missing is named.
 printf 'mass (kg), count\n5000, 3\n' >heavy.csv
 expect 0 "$clast" spectrum small.db --point 1 --with heavy.csv
-says 'no distance: from the mass in column `from` on there is no simulated fragment. The heaviest'
+says 'no distance: from the lightest mass on there is no simulated fragment. The heaviest'
 printf 'mass (kg)\n1e-9\n' >lone.csv
 expect 0 "$clast" spectrum small.db --point 1 --with lone.csv
-says 'no distance: from the mass in column `from` on there is at most one measured fragment. The heaviest'
+says 'no distance: from the lightest mass on there is at most one measured fragment. The heaviest'
 expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2
 far=$("$clast" spectrum many.db --point 1 --with measured.csv --json | sed -n 's/.*runs_as_far": \([0-9.]*\).*/\1/p')
 expect 0 "$clast" spectrum many.db --point 1 --with measured.csv
@@ -270,7 +270,7 @@ prints "fragment_count_mean"
 expect 0 "$clast" scatter lone.db
 says "values of fragment_count"
 expect 0 "$clast" compare lone.db:1 lone.db:1
-says "fragment_count: b minus a"
+says "fragment_count: means, and b minus a"
 expect 64 "$clast" plot small.db m.png -x strain --by strain
 expect 64 "$clast" plot small.db m.png -x strain,angle
 expect 64 "$clast" plot small.db m.png -x strain -Q largest_fraction,dust_fraction

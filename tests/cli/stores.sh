@@ -33,14 +33,14 @@ vary: {target.material.weibull.m: [8, 9], target.material.weibull.k: [1e34 1/m^3
 seeds: {per_point: 2}
 YAML
 expect 0 "$clast" run two.yaml -j 1 --quiet
-same "$(head -1 out | sed -E "s/^point +m +k \[m\^-3\] .*/m k/")" "m k" "varied inputs of the table, in the order of the campaign"
-same "$(sed 1d out | grep -cE ' (8|9) +(1e|5e)\+34 ')" 4 "rows of four points"
-[ "$(LC_ALL=C.UTF-8 awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le 100 ] || fail "wider than 100 columns"
+same "$(head -1 out | sed -E "s/^ *m +k \[m\^-3\] +point .*/m k/")" "m k" "varied inputs of the table, in the order of the campaign"
+same "$(sed 1d out | grep -cE '^ *(8|9) +(5×)?10\^34 ')" 4 "rows of four points"
+[ "$(LC_ALL=C.UTF-8 wc -L <out)" -le 100 ] || fail "wider than 100 columns"
 one many 'vary: {threshold.strain: [2 %], threshold.angle: [2 deg], contact.friction: [0.1], charge.energy: [2000 J/m], threshold.modulus: [10], contact.bonded: [true], stop.least_time: [0.02 ms]}'
 sed -i 's/threshold.modulus: \[10\], //' many.yaml
 expect 0 "$clast" run many.yaml -j 1
 says "not shown (--all): "; says "beta LSQ"
-for word in strain angle friction energy bonded time; do sed '/^ *1 /q' out | grep -q "$word" || fail "the table lacks $word"; done
+for word in strain angle friction energy bonded time; do sed '/^ *[0-9]/q' out | grep -q "$word" || fail "the table lacks $word"; done
 
 # A study or a search in the store of a campaign changes no table of it: what only the study varied is no input of its
 # points. Neither is what follows from a material.
@@ -103,7 +103,7 @@ says "from row to row the value of stop.end_time changes, too"
 expect 0 "$clast" plot stop.db bars.svg -x material # which no line could join
 says "clast: from one to the next stop end time changes, too"
 expect 0 "$clast" estimates own-rocks.db --studies
-same "$(head -1 out | tr -s ' ' | cut -d' ' -f1-5)" "point material particles runs M_1/M" "inputs of rocks and their study"
+same "$(head -1 out | tr -s ' ' | cut -d' ' -f1-5)" "material particles point runs M_1/M" "inputs of rocks and their study"
 
 # What tells two stores apart: a value with a comma is one value, and long values are whole.
 long=$(printf "x%.0s" $(seq 110))
@@ -142,7 +142,7 @@ sed 's/charge.energy: 2 kJ.m, //; s/^  threshold.strain.*/  charge.energy: [1000
 sed 's/1000 J/1 kJ/; s/2000 J/2 kJ/; s/joule/kilo/' joule.yaml >kilo.yaml
 for name in joule kilo; do expect 0 "$clast" run $name.yaml --quiet; done
 expect 0 "$clast" compare joule.db kilo.db
-prints " energy 2×10^3 J/m "; ! grep -q "kJ" out || fail "two units in one column"
+prints "energy 2000 J/m "; ! grep -q "kJ" out || fail "two units in one column"
 expect 0 "$clast" merge kinds.db fixed.db own-rocks.db # masses per metre, and whole ones
 for of in spectrum exponents; do
   expect 0 "$clast" $of kinds.db
@@ -168,7 +168,7 @@ same "$(tail -n +2 out | cut -d , -f 1,2)" "2,2" "the common point of a material
 expect 0 "$clast" converge charged.yaml --knob time_step,integrator,stop --knob grains=1.2cm,1.069cm "${study[@]}" -q --store studied.db
 for of in estimates scatter spectrum exponents; do
   expect 0 "$clast" $of studied.db
-  [ "$(LC_ALL=C.UTF-8 awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le 100 ] || fail "wider than 100 columns"
+  [ "$(LC_ALL=C.UTF-8 wc -L <out)" -le 100 ] || fail "wider than 100 columns"
   sed -n 1,2p out | grep -qE "M_1/M|value|fragments" || fail "no result"
 done
 expect 0 "$clast" estimates studied.db
@@ -244,7 +244,7 @@ expect 0 "$clast" run files.yaml -j 1 --quiet
 says "impact.speed (1000 m/s there, 2000 m/s here) differs"
 says "For one form alone"
 expect 0 "$clast" estimates files.db
-same "$(head -1 out | tr -s ' ' | cut -d " " -f 1-5)" "point material speed density runs" "inputs of changed files"
+same "$(head -1 out | tr -s ' ' | cut -d " " -f 1-5)" "material speed density point runs" "inputs of changed files"
 
 # Two campaigns of one name: the name takes both, and says that a number takes one.
 one twin '' '' 2

@@ -10,7 +10,7 @@ static void pairs_are_used(void **state) {
   const struct difference_value b[] = {{1, 11}, {2, 22}, {3, 33}, {4, -500}};
   const struct difference d = sample_difference(4, a, 4, b, 0.95);
   assert_int_equal(d.pairs, 3);
-  assert_true(d.mean[0] == 140 && d.mean[1] == -108.5 && d.difference == 2);
+  assert_true(d.side[0].mean == 140 && d.side[1].mean == -108.5 && d.difference == 2);
   assert_true(fabs(d.half_width - 4.302652729749 / sqrt(3)) < 1e-9); /* differences 1, 2, 3: standard deviation 1 */
 }
 

@@ -240,9 +240,9 @@ static void pairs_of_exponents(void **state) {
   snprintf(operand, sizeof operand, "%s:%lld", path, (long long)id);
   OK(ask_pairs_read(operand, operand, "beta", &(struct ask_choice){0}, &pairs, &error));
   assert_true(ask_pairs_next(pairs, &row));
-  assert_int_equal(row.difference.n[0], point.runs.count);
+  assert_int_equal(row.difference.side[0].n, point.runs.count);
   assert_int_equal(row.difference.pairs, point.runs.count);
-  assert_near(row.difference.mean[0], fit.fit.beta, 1e-9);
+  assert_near(row.difference.side[0].mean, fit.fit.beta, 1e-9);
   assert_true(row.difference.difference == 0 && isnan(row.difference.half_width)); /* of a point with itself */
   struct sample_summary summary = sample_summarise(point.runs.count, values, 0.95);
   assert_near(summary.half_width, fit.interval.half_width, 1e-9);
@@ -329,7 +329,7 @@ static void pairs_of_points(void **state) {
   assert_string_equal(text, "material.k = 1.0e+31, material.m = 7.0");
   for (size_t i = 0; i < 4; i++) {
     const struct difference *d = &rows[i].difference;
-    assert_true(d->n[0] == 4 && d->n[1] == 6 && d->pairs == 4); /* seeds 1000 .. 1003 are in both */
+    assert_true(d->side[0].n == 4 && d->side[1].n == 6 && d->pairs == 4); /* seeds 1000 .. 1003 are in both */
     assert_near(d->difference, 0, 1e-15);
     assert_int_equal(rows[i].point[0], same[i][0]);
     assert_int_equal(rows[i].point[1], same[i][1]);

@@ -116,8 +116,8 @@ static void of_pairs(void) {
       }
       const struct difference d = sample_difference(count[0], first, count[1], second, 0.95);
       fprintf(out, "== pairs of kind %d, n %zu\n", kind, n);
-      SAY("difference", (double)d.n[0], (double)d.n[1], (double)d.pairs, d.mean[0], d.mean[1], d.difference,
-          d.half_width);
+      SAY("difference", (double)d.side[0].n, (double)d.side[1].n, (double)d.pairs, d.side[0].mean, d.side[1].mean,
+          d.difference, d.half_width);
       for (int paired = 0; paired < 2; paired++) {
         const struct convergence_difference bias = convergence_bias(n, a, b, paired, 0.95);
         SAY("bias", (double)bias.n, bias.value, bias.half_width);

@@ -61,7 +61,6 @@ static void test_text(void **state) {
   }
 }
 
-/* A table for people cannot control the terminal: neither its cells nor its names and units. */
 /* The half width stands in the cell of its value, which leaves its range for nobody; a rare column is hidden. */
 static void test_half_widths(void **state) {
   (void)state;
@@ -84,6 +83,30 @@ static void test_half_widths(void **state) {
   free(text);
 }
 
+/* The ends of an interval stand in the cell of its value, with the mark; programs see three columns. */
+static void test_intervals(void **state) {
+  (void)state;
+  static const char *const expected[] = {"             value\n0.4 (0.2 to 0.8) !\n         2\xc3\x97"
+                                         "10^33\n               -\n",
+                                         "value,low,high\n0.42,0.161,0.806\n2e+33,,\n,,\n"};
+  for (int programs = 0; programs < 2; programs++) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    TABLE table = table_new(programs ? TABLE_CSV : TABLE_BARE, out);
+    table_interval_columns(table, "value", "low", "high");
+    table_rests_on(table, &(struct ask_doubts){.runs = 2, .doubtful = 1});
+    table_interval(table, 0.42, 0.161, 0.806);
+    table_interval(table, 2e33, NAN, NAN);
+    table_interval(table, NAN, NAN, NAN);
+    assert_int_equal(table_end(table, NULL), STATUS_OK);
+    fclose(out);
+    assert_string_equal(text, expected[programs]);
+    free(text);
+  }
+}
+
+/* A table for people cannot control the terminal: neither its cells nor its names and units. */
 static void test_text_is_harmless(void **state) {
   (void)state;
   static const char *const hostile[] = {"a\x1b[2J\x07", "b\x08\x7f", "\xc2\x9b\x9b\xc3\xa9", "\r\n\t"};
@@ -218,6 +241,7 @@ int main(void) {
       cmocka_unit_test(test_json),
       cmocka_unit_test(test_text),
       cmocka_unit_test(test_half_widths),
+      cmocka_unit_test(test_intervals),
       cmocka_unit_test(test_text_is_harmless),
       cmocka_unit_test(test_csv_is_harmless),
       cmocka_unit_test(test_numbers_round_trip),

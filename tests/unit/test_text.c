@@ -83,7 +83,9 @@ static void test_numbers_for_people(void **state) {
   const char *const cases[][2] = {{"E 5e+08 Pa, 1e-06 s", "E 5\xc3\x97"
                                                           "10^8 Pa, 10^-6 s"},
                                   {"3.8e+06 steps, 1e+03 grains of 1.1e+03", "3 800 000 steps, 1000 grains of 1100"},
-                                  {"5e34 1/m^3, 0.5, c_p 4593 m/s; 5e+04", "5e34 1/m^3, 0.5, c_p 4593 m/s; 50 000"},
+                                  {"5e34 1/m^3, 0.5, c_p 4593 m/s; 5e+04", "5e34 m^-3, 0.5, c_p 4593 m/s; 50 000"},
+                                  {"k 5e+33 1/m^3; 2 1/s, in 1/s", "k 5\xc3\x97"
+                                                                   "10^33 m^-3; 2 s^-1, in 1/s"},
                                   {"", ""}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char *text = text_people(cases[i][0]);

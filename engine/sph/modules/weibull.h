@@ -70,6 +70,6 @@ INPUT_CHOICE(fracture.draw, weibull.draw,
                   .source = "Benz & Asphaug 1995, eq. 11"),
     MATERIAL_REAL(
         weibull.k, weibull.k, "1/m^3", NAN, 1, 1e200, .flags = FIELD_MAY_BE_OFF, .when = "../fracture=auto|on",
-        .doc = "Weibull's k: flaws per volume. Papers print it in 1/cm^3, and 1 of these is 1e6 1/m^3. off: no flaws.",
+        .doc = "Weibull's k: flaws per volume. Papers print it in cm^-3: 1 cm^-3 is 10^6 m^-3. off: no flaws.",
         .source = "Benz & Asphaug 1995, eq. 11"),
 #endif
