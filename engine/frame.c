@@ -37,10 +37,11 @@ static void look_at_energy(struct frame *f) {
     return;
   double speed;
   const size_t member = f->kind->fastest(f, &speed);
-  frame_end(f->state, f->kind->fault, OUTCOME_ENERGY,
-            "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g; "
-            "%s %zu is the fastest, at %.3g m/s: %s",
-            f->kind->time(f), drift / now.input, now.bound, f->kind->member, member, speed, f->kind->remedy(f, drift));
+  frame_end(
+      f->state, f->kind->fault, OUTCOME_ENERGY,
+      "at %.6g s the sum of all energies has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g; "
+      "%s %zu is the fastest, at %.3g m/s: %s",
+      f->kind->time(f), drift / now.input, now.bound, f->kind->member, member, speed, f->kind->remedy(f, drift));
 }
 
 void frame_look(struct frame *f) {

@@ -39,7 +39,7 @@ function computed(store) {
   const excluded = sum(points, 'excluded');
   if (excluded) parts.push(`${plural(excluded, 'run')} excluded (clast exclude lists them)`);
   if (store.facts.chosen) parts.push(`only ${store.facts.chosen}`);
-  if (surplus) parts.push(`${surplus} surplus (beyond the prefix of a stopping rule)`);
+  if (surplus) parts.push(`${surplus} after the stop of a stopping rule`);
   const without = points.filter((point) => !point.n).length;
   if (without) parts.push(`${plural(without, 'point')} without a counted run`);
   return parts.join('; ');

@@ -108,7 +108,7 @@ void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *t
       continue;
     text_append(text, size, "%s %s", k ? "," : "", doubts->word[k].word);
     if (runs < doubts->doubtful)
-      text_append(text, size, " %" PRId64, runs);
+      text_append(text, size, " (%" PRId64 " run%s)", runs, text_plural(runs));
   }
 }
 

@@ -103,9 +103,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
     uncertainty_doubts(&doubts, stderr);
     words_print(
         stderr, "",
-        "clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete "
-        "mass. p below 0.1: a power law does not fit. cutoff_p below 0.05: one with an exponential cut-off fits "
-        "better; open_cutoff_p: the same with the largest fragments, where they belong to the law%s%s%s%s%s",
+        "clast: exponents by maximum likelihood on masses, from the lightest mass on, which is never below the "
+        "complete mass. p below 0.1: a power law does not fit. p of cut-off below 0.05: one with an exponential "
+        "cut-off fits better; largest included: the same with the largest fragments, where they belong to the "
+        "law%s%s%s%s%s",
         *seen.untold ? ". -: " : "", seen.untold, seen.open ? ". ~: no interval, " : "", seen.open ? seen.open : "",
         seen.flat ? ". N(>m), N(>L) -: numbers above a mass follow no power law where F(m) is at most 1" : "");
   }

@@ -422,7 +422,7 @@ static status print_levels(struct printing *printing, size_t from, size_t quanti
   table_columns(table,
                 (const char *const[]){"mean_weak", "bias", "bias_hw95", "error", "cpu_s", "frontier", "sd", NULL});
   static const char *const rare[] = {"skewness",        "share of upper mode", "correlation",
-                                     "correlation low", "correlation high",    "pays from correlation"};
+                                     "correlation low", "correlation high",    "worth it above this correlation"};
   for (size_t c = 0; c < sizeof rare / sizeof rare[0]; c++) {
     table_column(table, rare[c], NULL);
     table_rare(table);
@@ -509,7 +509,7 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
 }
 
 static const char legend_of_all[] =
-    "correlation: of the runs of a seed with those at the next finer level; from \"pays from correlation\" on, the "
+    "correlation: of the runs of a seed with those at the next finer level; above that of the column \"worth it\", the "
     "coarse level as a control variate would save time. share of upper mode: of the runs, where their values have two "
     "modes (peaks).";
 

@@ -250,8 +250,8 @@ static double whole(const struct condition_run *r) {
 #define OF_THE_LARGEST "largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest"
 
 const struct condition dem_conditions[] = {
-    CONDITION("drift", .number = "the error of the energy ledger, over the energy put in,",
-              .bound = CONDITION_LARGEST_DRIFT, .doubt = "numerical errors made or lost more than 1 % of the energy",
+    CONDITION("drift", .number = "the energy error, over the energy put in,", .bound = CONDITION_LARGEST_DRIFT,
+              .doubt = "numerical errors made or lost more than 1 % of the energy",
               .reason = "our choice; the scene's fidelity.energy_bound may allow more",
               .remedy = "give a shorter fidelity.time_step", .lasting = true, .after = drift),
     CONDITION(
@@ -271,7 +271,7 @@ const struct condition dem_conditions[] = {
               .remedy = "give a fidelity.time_step of a tenth of the stable step", .before = step_before,
               .beside = step_estimated, .after = step_after),
     CONDITION("turn", .number = "the error of the angular momentum", .bound = 0.01,
-              .doubt = "bodies turn by numerical errors", .reason = "our choice, as for the energy ledger",
+              .doubt = "bodies turn by numerical errors", .reason = "our choice, as for the energy error",
               .remedy = "give a shorter fidelity.time_step", .after = angular),
     CONDITION("damping", .number = "contact damping times fidelity.time_step", .bound = 0.05,
               .doubt = "the integrator does not resolve the damping",
@@ -279,8 +279,8 @@ const struct condition dem_conditions[] = {
               .remedy = "give a shorter fidelity.time_step, or less damping", .before = damping),
     CONDITION("gain", .number = "the energy that contacts gave without having taken it, over the energy put in,",
               .bound = CONDITION_LARGEST_DRIFT,
-              .doubt = "contact.law printed and contact.bonded false can make energy, which the ledger books as work",
-              .reason = "as for the energy ledger", .remedy = "set contact.law: conservative and contact.bonded: true",
+              .doubt = "contact.law printed and contact.bonded false can make energy, which counts as work",
+              .reason = "as for the energy error", .remedy = "set contact.law: conservative and contact.bonded: true",
               .after = gain),
     CONDITION("effect", .fact = "one of contact.friction and contact.tangential_damping is given without the other",
               .doubt = "it has no effect: friction bounds the force of tangential damping", .reason = "K99 eq. 4",

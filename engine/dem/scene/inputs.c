@@ -156,9 +156,9 @@ static const struct field rows[] = {
            .choice_docs = "velocity Verlet: the everyday choice\nfifth-order Gear predictor-corrector: the paper's",
            .doc = "Integrator of the equations of motion.", .source = "K99 section 2.3 for `gear`"),
     REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
-         .doc =
-             "The run ends with state `energy` when the closed ledger drifts by more than this share of the energy put "
-             "in. off: it only reports the drift."),
+         .doc = "The run ends with state `energy` when the sum of all energies drifts by more than this share of the "
+                "energy put "
+                "in. off: it only reports the drift."),
 };
 
 const struct field_table dem_inputs = FIELD_TABLE(

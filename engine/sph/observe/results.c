@@ -41,7 +41,7 @@ static const struct field rows[] = {
           .doc = "M_1/M of the core: mass of the largest fragment without its damaged layer over the target's mass, "
                  "with the static strength.",
           .source = "BA95 section 4.4"),
-    SHARE(largest.veneer_fraction,
+    SHARE(largest.veneer_fraction, .label = "M_1/M with the damaged layer",
           .doc = "M_1/M: mass of the largest fragment with its damaged layer (veneer) over the target's mass, with the "
                  "static "
                  "strength.",

@@ -775,8 +775,8 @@ static void both_slopes(const void *inputs, double both[2]) {
   "largest.dynamic_fraction largest.axis_middle largest.axis_short largest.speed"
 
 const struct condition sph_conditions[] = {
-    CONDITION("drift", .number = "the error of the energy ledger, over the energy put in,",
-              .bound = CONDITION_LARGEST_DRIFT, .doubt = "numerical errors made or lost more than 1 % of the energy",
+    CONDITION("drift", .number = "the energy error, over the energy put in,", .bound = CONDITION_LARGEST_DRIFT,
+              .doubt = "numerical errors made or lost more than 1 % of the energy",
               .reason = "our choice; the scene's fidelity.energy_bound may allow more",
               .remedy = "lower fidelity.cfl, or take more particles", .lasting = true, .after = drift),
     CONDITION("step", .number = "fidelity.cfl", .bound = 0.5, .doubt = "energy may drift",
@@ -787,13 +787,13 @@ const struct condition sph_conditions[] = {
               .remedy = "leave out fidelity.cfl", .before = courant_undamped),
     CONDITION("clamped", .number = "the energy given to cold matter that is held at u = 0, over the energy put in,",
               .bound = 0.01, .doubt = "the computation makes energy where matter would have less than none",
-              .reason = "as for the energy ledger", .remedy = "take more particles", .after = clamped),
+              .reason = "as for the energy error", .remedy = "take more particles", .after = clamped),
     CONDITION("held", .number = "the share of particle steps that held the density at its lower limit", .bound = 0.01,
               .doubt = "expanded matter keeps a density that it has not", .reason = "our choice",
               .remedy = "give a lower limit, or end the run earlier", .after = held),
     CONDITION("turn", .number = "the error of the angular momentum", .bound = 0.01,
               .doubt = "a body that turns is strained by the computation, and may break by that",
-              .reason = "our choice, as for the energy ledger", .remedy = "set method.gradient_correction: true",
+              .reason = "our choice, as for the energy error", .remedy = "set method.gradient_correction: true",
               .after = angular),
     CONDITION("contrast", .number = "the ratio of the densities of target and projectile without method.volume_weights",
               .bound = 3, .doubt = "energy may drift",

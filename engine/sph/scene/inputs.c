@@ -288,7 +288,8 @@ static const struct field rows[] = {
     COUNT(fidelity.threads, 1, 1, 1024,
           .doc = "Threads of one run, for a large run on a machine without other work. The bits do not depend on it."),
     REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
-         .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
+         .doc = "The run ends with state `energy` when the sum of all energies drifts by more than this share of the "
+                "energy put in. "
                 "off: it only reports the drift."),
     {.nest = &modules, .only = "fidelity"},
 };
