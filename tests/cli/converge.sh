@@ -389,7 +389,7 @@ for knob, setting, of, _, of_step in rows:
     assert knob != "grains" or of_step > step or errors[of][0] <= errors[own][0] * (1 + 1e-9), (setting, step, errors)
 # People see the same two digits, and the same >=.
 cell = ("" if errors[own][1] == "known" else ">= ") + "%.2g" % errors[own][0]
-for screen, line in (("table", r"grains +0.01069 m \*"), ("plan", "the scene's own"), ("estimates", "^ +%d " % own)):
+for screen, line in (("table", r"grains +0.01069 m \*"), ("plan", "the scene's own"), ("estimates", r"(^| )%d  +\d+  +\d\.\d+ (±|≥|\()" % own)):
     (line,) = [found for found in open(screen) if re.search(line, found)]
     assert re.search("(^| )" + re.escape(cell) + "( |$)", line.rstrip()), (screen, line, cell)
 sentence = re.search(r"^grains = (\S+): .* Error of the resolution: (\S+) ", " ".join(open("table").read().split()))

@@ -52,7 +52,7 @@ expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --store left.db --json
 cmp -s out killed.json || fail "runs that the fit leaves out are in its report"
 expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --picture predicted.svg --keep-script
 says "0 runs computed"
-head -1 out | grep -qE '^threshold.strain [0-9.]+ % \([0-9.]+ to [0-9.]+\), threshold' || fail "the first line does not answer"
+head -1 out | grep -qE '^threshold.strain [0-9.]+ \([0-9.]+ to [0-9.]+\) %, threshold' || fail "the first line does not answer"
 prints "One experiment is one specimen"
 prints "RESOLUTION: what a finer resolution would change is not known"
 grep -q 'which is not known' predicted.gp || fail "no word on a resolution that is not known"
