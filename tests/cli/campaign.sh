@@ -253,7 +253,7 @@ says "warning: 4 of 4 points ended at seeds.max (60 runs) before seeds.until was
 says "Raise seeds.max, or ask for less"
 grep -q "narrow enough" err && fail "a wide interval is called narrow"
 expect 0 "$clast" status wide.db
-prints "rule_unmet"
+prints "too early"
 expect 0 "$clast" status wide.db --json
 prints '"rule_unmet": 4'
 # A width has its unit: the runs are there, and the rule asks for another result.

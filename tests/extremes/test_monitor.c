@@ -45,7 +45,8 @@ static void energy_from_nowhere_ends_a_run_of_grains(void **state) {
   struct dem_run *run = disc("threshold.breaking=true");
   run->system->c.vx[VICTIM] += 400; /* a grain gets a velocity without any impact */
   dem_ends(run, OUTCOME_ENERGY,
-           (const char *const[]){"energy ledger has drifted", "is the fastest", " s ", "fidelity.time_step", NULL});
+           (const char *const[]){"sum of all energies has drifted", "is the fastest", " s ", "fidelity.time_step",
+                                 NULL});
 }
 
 static void grains_that_are_lost_end_a_run(void **state) {
@@ -107,8 +108,8 @@ static void energy_from_nowhere_ends_a_run_of_particles(void **state) {
   struct sph_run *run = sphere("fidelity.precision=double");
   run->system->c.vx[VICTIM] += 5000;
   sph_ends(run, OUTCOME_ENERGY,
-           (const char *const[]){"energy ledger has drifted", "particle ", "is the fastest", " s ", "fidelity.cfl",
-                                 NULL});
+           (const char *const[]){"sum of all energies has drifted", "particle ", "is the fastest", " s ",
+                                 "fidelity.cfl", NULL});
 }
 
 static void particles_that_are_lost_end_a_run(void **state) {
