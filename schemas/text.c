@@ -318,6 +318,11 @@ const char *text_word(const char *word, char shown[TEXT_WORD]) {
   return shown + 1;
 }
 
+const char *text_percent(double share, char shown[TEXT_PERCENT]) {
+  snprintf(shown, TEXT_PERCENT, 100 * share < 99.5 ? "%.2g %%" : "%.0f %%", 100 * share);
+  return shown;
+}
+
 void text_append_fixed(char *text, size_t size, double number, int decimals) {
   if (fabs(number) > 1e6)
     text_append(text, size, "%.5g", number);

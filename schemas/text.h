@@ -51,6 +51,11 @@ const char *text_word(const char *word, char shown[TEXT_WORD]);
 /* Prints a time that a person waits: "2.2 s", "3.6 minutes", "5 hours". */
 void text_duration(double seconds, FILE *out);
 
+/* A share in percent, with two digits or all before the point: "0.012 %", "9.5 %", "100 %", "250 %". Returns it, in
+ * `shown`. */
+enum { TEXT_PERCENT = 32 };
+const char *text_percent(double share, char shown[TEXT_PERCENT]);
+
 /* Appends a number with so many decimals, or with five digits and an exponent ("1e+308") from a million on, where
  * people do not count digits. */
 void text_append_fixed(char *text, size_t size, double number, int decimals);

@@ -823,11 +823,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const char *unit = campaign_unit(campaign, campaign->accuracy_quantity, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
-    snprintf(share, sizeof share,
-             best->mean == 0            ? " (no share of a mean of 0 allows an error)"
-             : least < fabs(best->mean) ? " (%.2g %%)"
-                                        : " (%.0f %%)",
-             100 * least / fabs(best->mean));
+    snprintf(share, sizeof share, best->mean == 0 ? " (no share of a mean of 0 allows an error)" : " (%s)",
+             text_percent(least / fabs(best->mean), (char[TEXT_PERCENT]){0}));
   const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
   const bool by_resolution = !accuracy->open && best->middle * least >= best->within;
   const bool of_another = finest && strncmp(accuracy->left_out, finest->knob, strlen(finest->knob)) != 0;
@@ -982,9 +979,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     text_append(cost, sizeof cost, timed ? " (%s allowed)" : " (%s of processor time allowed)", allowed);
   const char *const or_more[] = {"", " or more"}, *more = or_more[isnan(option->beyond)];
   if (campaign->accuracy_of_value)
-    snprintf(share, sizeof share,
-             option->total < fabs(option->mean) ? " (%.2g %% of its mean %.3g%s)" : " (%.0f %% of its mean %.3g%s)",
-             100 * option->total / fabs(option->mean), option->mean, unit);
+    snprintf(share, sizeof share, " (%s of its mean %.3g%s)",
+             text_percent(option->total / fabs(option->mean), (char[TEXT_PERCENT]){0}), option->mean, unit);
   words_print(out, before,
               "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s (%s) and the rest seeds, with %s and %" PRId64
               " seeds a point%s",

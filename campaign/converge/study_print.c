@@ -358,8 +358,8 @@ static status print_limit(const struct printing *printing, const struct study_la
     fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
     fputs(" the three finest levels do not follow limit + a step^p with p from 0.5 to 2", out);
     if (!seeds_are_equal(1, found))
-      fprintf(out, " (if they did, chance would put them this far off in %s%.2g %% of studies)",
-              limit->fit < 1e-5 ? "less than " : "", 100 * fmax(limit->fit, 1e-5));
+      fprintf(out, " (if they did, chance would put them this far off in %s%s of studies)",
+              limit->fit < 1e-5 ? "less than " : "", text_percent(fmax(limit->fit, 1e-5), (char[TEXT_PERCENT]){0}));
     fputs("; ", out);
   } else if (limit->verdict == LIMIT_CONSTANT)
     fprintf(out, "no difference seen, all runs are equal; ");

@@ -352,7 +352,6 @@ static const char *most_needed(const struct measured_match *match) {
  * a distance and no share, that of the fewest runs; needed 0: none. */
 static void tell_shape(size_t pools, size_t agree, size_t differ, const struct measured_match *match, bool nothing,
                        const size_t judged[2], const struct measured_match *few) {
-  const double share = match->share;
   char joined[120] = "of the runs are as far from the other runs as the measured spectrum is";
   if (match->together > 1)
     snprintf(joined, sizeof joined, "of draws of %zu runs (one has too few fragments) are as far from the other runs",
@@ -380,8 +379,8 @@ static void tell_shape(size_t pools, size_t agree, size_t differ, const struct m
     words_print(stdout, "", "agrees in shape with %zu of %zu rows (runs as far %.2g or more), differs from %zu%s",
                 agree, pools, FAR, differ, rest);
   } else
-    words_print(stdout, "", "%s in shape, whatever the number of fragments: %.2g %% %s (differs: below %.2g %%)",
-                agree ? "agrees" : "differs", 100 * share, joined, 100 * FAR);
+    words_print(stdout, "", "%s in shape, whatever the number of fragments: %s %s (differs: below %.2g %%)",
+                agree ? "agrees" : "differs", text_percent(match->share, (char[TEXT_PERCENT]){0}), joined, 100 * FAR);
   putchar('\n');
 }
 

@@ -70,6 +70,15 @@ expect 0 "$clast" run small.yaml --seeds 40 --store many.db -j 2
 far=$("$clast" spectrum many.db --point 1 --with measured.csv --json | sed -n 's/.*runs_as_far": \([0-9.]*\).*/\1/p')
 expect 0 "$clast" spectrum many.db --point 1 --with measured.csv
 same "$(head -1 out | cut -d' ' -f1-3)" "$(awk "BEGIN {print $far < 0.05 ? \"differs\" : \"agrees\"}") in shape," "verdict of $far"
+expect 0 "$clast" spectrum many.db --point 1 --csv
+python - <<'PY' # twenty quantiles of the simulated fragments are nearer to all of them than any run is
+import csv
+bins = [[float(row[name]) for name in ("lower", "upper", "fragments")] for row in csv.DictReader(open("out"))]
+masses = [a + (i + 0.5) / n * (b - a) for a, b, n in bins if a > 0.5 for i in range(round(n))]
+print("mass (kg/m)", *masses[len(masses) // 40::len(masses) // 20], sep="\n", file=open("pooled.csv", "w"))
+PY
+expect 0 "$clast" spectrum many.db --point 1 --with pooled.csv
+prints "number of fragments: 100 % of the runs"
 expect 0 "$clast" spectrum small.db --with measured.csv --cumulative --size "5000 kg/m^3" --runs --picture beside.svg
 is_svg beside.svg
 grep -q 'measured: &lt;made up>' beside.svg || fail "the source of the measured spectrum is not in the picture"
@@ -437,4 +446,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 159
+done_after 161

@@ -51,6 +51,16 @@ static void test_fixed_has_few_digits(void **state) {
   }
 }
 
+static void test_percent(void **state) {
+  (void)state;
+  static const struct {
+    double share;
+    const char *text;
+  } cases[] = {{1.234e-4, "0.012 %"}, {0.05, "5 %"}, {0.994, "99 %"}, {0.996, "100 %"}, {1, "100 %"}, {2.5, "250 %"}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    assert_string_equal(text_percent(cases[i].share, (char[TEXT_PERCENT]){0}), cases[i].text);
+}
+
 static void assert_wrapped(const char *text, size_t width, const char *lines) {
   char *wrapped;
   size_t size;
@@ -99,6 +109,7 @@ int main(void) {
       cmocka_unit_test(test_append_stays_in_its_array),
       cmocka_unit_test(test_append_cuts_whole_characters),
       cmocka_unit_test(test_fixed_has_few_digits),
+      cmocka_unit_test(test_percent),
       cmocka_unit_test(test_hexadecimal),
       cmocka_unit_test(test_wrap_keeps_numbers_and_commands),
       cmocka_unit_test(test_numbers_for_people),
