@@ -3,12 +3,14 @@ import {body, command, download, element, fill, select, table} from './elements.
 import {COLOURS, draw, scale} from './chart.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store, writeAddress} from './state.js';
-import {answer, has} from './stores.js';
+import {answer, has, toDouble} from './stores.js';
 import {csv, number, plain, plural, shell, fileOf} from './words.js';
 
 const MOST = 100000, SHOWN = 500;
 
 const parts = {};
+
+const isNumber = (value) => typeof toDouble(value) === 'number';
 
 // A ready question with a parameter asks of the first chosen point and of its first run.
 function withParameters(query) {
@@ -20,19 +22,21 @@ function withParameters(query) {
 }
 
 async function showChart(figure, result, x, y) {
-  const rows = result.objects().filter((row) => typeof row[y] === 'number');
-  const numeric = rows.every((row) => typeof row[x] === 'number');
+  const [across, up] = [x, y].map((column) => result.columns.lastIndexOf(column));
+  const rows = result.rows.map((row) => [row[across], row[up]]).filter(([, value]) => isNumber(value));
+  const drawn = rows.map((row) => row.map(toDouble));
+  const numeric = rows.every(([value]) => isNumber(value));
   const title = (column) => plain(state.stores, column);
-  await draw(figure, {data: {values: rows.map((row) => ({x: row[x], y: row[y]}))}, height: 320,
+  await draw(figure, {data: {values: drawn.map(([a, b]) => ({x: a, y: b}))}, height: 320,
     mark: {type: 'point', filled: true, size: 45, color: COLOURS[0], tooltip: true},
-    encoding: {x: numeric ? {field: 'x', type: 'quantitative', scale: scale(rows.map((row) => row[x])), title: title(x)} : {field: 'x', type: 'nominal', title: title(x)},
-      y: {field: 'y', type: 'quantitative', scale: scale(rows.map((row) => row[y])), title: title(y)}}},
+    encoding: {x: numeric ? {field: 'x', type: 'quantitative', scale: scale(drawn.map(([value]) => value)), title: title(x)} : {field: 'x', type: 'nominal', title: title(x)},
+      y: {field: 'y', type: 'quantitative', scale: scale(drawn.map(([, value]) => value)), title: title(y)}}},
   {name: 'question', description: `${title(y)} against ${title(x)}`, caption: `${title(y)} against ${title(x)}, ${plural(rows.length, 'row')}.`,
-    columns: [x, y], rows: rows.map((row) => [row[x], row[y]])});
+    columns: [x, y], rows});
 }
 
 function chartTools(result) {
-  const numbers = result.columns.filter((column, i) => result.rows.some((row) => typeof row[i] === 'number'));
+  const numbers = result.columns.filter((column, i) => result.rows.some((row) => isNumber(row[i])));
   if (numbers.length === 0 || result.rows.length < 2) return null;
   const figure = element('figure', {});
   const chosen = {x: numbers[0], y: numbers.find((column) => column.endsWith('_mean')) ?? numbers[1] ?? numbers[0]};

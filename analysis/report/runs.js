@@ -2,7 +2,7 @@
 import {body, command, element, fill, list, table} from './elements.js';
 import * as questions from './questions.js';
 import {drawnPoints, state, store} from './state.js';
-import {ask, has} from './stores.js';
+import {answer, ask, has} from './stores.js';
 import {inUnit, label, marked, number, plural, fileOf} from './words.js';
 
 const SHOWN = 200;
@@ -23,10 +23,10 @@ function pictureOf(from, row) {
 }
 
 function showRun(from, id) {
-  const [row] = ask(from, questions.run, {run: id});
+  const {columns, rows: [row]} = answer(from, questions.run, {run: id}, 1);
   const [picture] = has(from, 'picture') ? ask(from, questions.pictureOfRun, {run: id}) : [];
   const file = fileOf(from);
-  const pairs = Object.entries(row).filter(([, value]) => value !== null && value !== '' && !(value instanceof Uint8Array))
+  const pairs = columns.map((column, i) => [column, row[i]]).filter(([, value]) => value !== null && value !== '' && !(value instanceof Uint8Array))
     .map(([column, value]) => [label(state.stores, column), number(inUnit(state.stores, column, value), 7)]);
   fill(document.getElementById('run'), element('h3', {tabindex: -1, id: 'run-title'}, `Run ${id}${ofStore(from)}`),
     picture ? pictureOf(from, picture) : element('p', {}, 'Its picture is not on this page.'),

@@ -10,10 +10,16 @@ async function unpack(text) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// All rows of a question as objects. Numbers that a double cannot hold are cast to text by the questions.
+// All rows of a question as objects.
 export function ask(store, sql, parameters = {}) {
-  return answer(store, sql, parameters, Infinity).objects();
+  const {columns, rows} = answer(store, sql, parameters, Infinity);
+  return rows.map((row) => Object.fromEntries(columns.map((column, i) => [column, toDouble(row[i])])));
 }
+
+// An integer that a double cannot hold, such as a seed, is a BigInt in an answer; charts take doubles.
+export const toDouble = (value) => (typeof value === 'bigint' ? Number(value) : value);
+const isSafe = (value) => !Number.isInteger(value) || Number.isSafeInteger(value);
+const exact = (value) => (typeof value === 'bigint' && isSafe(Number(value)) ? Number(value) : value);
 
 // Column names and at most `most` rows.
 export function answer(store, sql, parameters, most) {
@@ -26,10 +32,10 @@ export function answer(store, sql, parameters, most) {
     while (statement.step()) {
       more = rows.length === most;
       if (more) break;
-      rows.push(statement.get());
+      const row = statement.get();
+      rows.push(row.every(isSafe) ? row : statement.get(null, {useBigInt: true}).map(exact));
     }
-    const objects = () => rows.map((row) => Object.fromEntries(columns.map((column, i) => [column, row[i]])));
-    return {columns, rows, more, objects};
+    return {columns, rows, more};
   } finally {
     statement.free();
   }

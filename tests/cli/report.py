@@ -185,6 +185,17 @@ def sql(browser):
     order = [y for _, y in sorted(heights)]
     assert sorted(range(4), key=lambda i: -order[i]) == sorted(range(4), key=lambda i: float(want[i][2])), (heights, want)
     done("an answer is drawn as a chart, with its CSV")
+    # More digits than a double has: in the table, the file, the chart and its file.
+    digits = [["9007199254740993", "0.5"], ["-9223372036854775808", "0.25"], ["7", "9007199254740995"]]
+    question = "SELECT column1 AS seed, column2 AS m FROM (VALUES " + ", ".join(f"({a}, {b})" for a, b in digits) + ")"
+    browser.js(f"document.querySelector('#sql').value = {json.dumps(question)}; document.querySelector('#ask').click()")
+    got = browser.js("[...document.querySelectorAll('#answer tbody tr')].map((r) => [...r.cells].map((c) => c.textContent))")
+    assert got == digits, got
+    assert list(csv.reader(io.StringIO(taken(browser, "#answer", "CSV"))))[1:] == digits
+    browser.js("document.querySelector('#answer summary').click()")
+    browser.until("document.querySelectorAll('#answer figure svg .mark-symbol path').length === 3")
+    assert list(csv.reader(io.StringIO(taken(browser, "#answer figure", "CSV"))))[1:] == digits
+    done("integers have the digits of the store")
     count = browser.js("document.querySelectorAll('#query [role=group] button').length")
     assert count > 8, count
     for i in range(count):
@@ -351,7 +362,12 @@ def slices(browser):
             wanted = {row[0] for row in db.execute("SELECT point_id FROM points WHERE charge_energy = ?", (float(value),))}
         assert of_value[-1] == wanted, (of_value, wanted)
     assert len(set.union(*of_value)) == 8, of_value
-    done("a map of three inputs shows one value of the third")
+    browser.js("document.querySelector('#runs tbody button').click()")
+    with sqlite3.connect(f"{three}.db") as db:
+        (seed,) = db.execute("SELECT seed FROM run WHERE run_id = ?", (int(text(browser, "#runs tbody button")),)).fetchone()
+    pairs = browser.js("[...document.querySelectorAll('#run dt')].map((term) => [term.textContent, term.nextSibling.textContent])")
+    assert seed > 1 << 53 and ["seed", str(seed)] in pairs, (seed, pairs)
+    done("a map of three inputs shows one value of the third; a run has all digits of its seed")
 
 
 def opens_on(browser):
