@@ -174,6 +174,7 @@ static status read_json(struct reading *r, const char *file, const char *text, s
   }
   if (parsed)
     return status_fail(r->error, parsed, "%.100s is no JSON: %.500s", file, why.message);
+  TRY(document_verdict(document, r->error)); /* a name that is given twice */
   document_node *root = document_root(document);
   if (results)
     TRY(json_results(r, file, root));
@@ -184,9 +185,17 @@ static status read_json(struct reading *r, const char *file, const char *text, s
 
 static status find_column(const struct reading *r, const struct csv *csv, const char *file, const char *name,
                           size_t *column) {
-  for (*column = 0; *column < csv->count; (*column)++)
-    if (strcmp(csv->cells[*column].text, name) == 0)
-      return STATUS_OK;
+  bool found = false;
+  for (size_t i = 0; i < csv->count; i++) {
+    if (strcmp(csv->cells[i].text, name) != 0)
+      continue;
+    if (found)
+      return status_fail(r->error, STATUS_CONTENT, "%.100s has two columns `%.100s`", file, name);
+    found = true;
+    *column = i;
+  }
+  if (found)
+    return STATUS_OK;
   return status_fail(r->error, STATUS_CONTENT, "%.100s has no column `%.100s`; its first line must name the columns",
                      file, name);
 }

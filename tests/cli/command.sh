@@ -234,6 +234,12 @@ SH
 bad columns exit "has no column \`x\`" 'output: out.csv' <<'SH'
 printf 'y,z\n1,2\n' >out.csv
 SH
+bad twice exit "x: given twice; the first is in line 1" <<'SH'
+echo '{"x": 1, "x": 2}'
+SH
+bad doubled exit "out.csv has two columns \`x\`" 'output: out.csv' <<'SH'
+printf 'x,y,x\n1,2,3\n' >out.csv
+SH
 bad ragged exit "out.csv, line 3" 'output: out.csv' <<'SH'
 printf 'x,z\n1,2\n3\n' >out.csv
 SH
@@ -441,4 +447,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 166
+done_after 172
