@@ -1,18 +1,19 @@
-/* Canned queries. People also learn the tables from them: they are plain SQL without functions of our own, so that each
- * can be pasted into any tool. */
+/* Canned queries. People also learn the views from them: they are plain SQL without functions of our own, so that each
+ * can be pasted into any tool. They read the views, not table run: the views leave out values that are withheld. */
 #include "db/ask/ask.h"
 
 #include <string.h>
 
-/* Documents that the build embeds: db/ask/canned_point_stats.sql, db/ask/canned_scatter.sql. */
-extern const char canned_point_stats_sql[], canned_scatter_sql[];
+extern const char canned_scatter_sql[]; /* db/ask/canned_scatter.sql, which the build embeds */
 
 static const struct query_canned queries[] = {
     {"points", "Statistics of every point: n, failed, censored, mean, scatter and interval of the main results.",
      "SELECT * FROM points", ""},
     {"point-stats",
      "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.",
-     canned_point_stats_sql, ""},
+     "SELECT point_id, results_version, n, " OUTCOME_DEFAULT "_mean AS mean, " OUTCOME_DEFAULT
+     "_sd AS sd, " OUTCOME_DEFAULT "_se AS se FROM points WHERE n > 0 ORDER BY point_id, results_version",
+     ""},
     {"runs", "Every run of a point, with its inputs and results (:point).",
      "SELECT * FROM runs WHERE point_id = :point ORDER BY replicate, seed", "point"},
     {"spectrum",
@@ -39,28 +40,28 @@ static const struct query_canned queries[] = {
      ""},
     {"scatter", "How much the seed matters: relative scatter of the main results per point.", canned_scatter_sql, ""},
     {"failures", "Runs without a usable result, and attempts that failed, with what they said.",
-     "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM run WHERE counts = 0 "
+     "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM runs WHERE counts = 0 "
      "AND surplus = 0\nUNION ALL\n"
      "SELECT point_id, replicate, seed, reason || iif(signal, ' (signal ' || signal || ')', ''), number, wall_time, "
      "host, "
      "message FROM attempt ORDER BY point_id, replicate, attempt",
      ""},
-    {"censored", "Runs that ended at their time: fragments may still have been breaking.",
-     "SELECT point_id, run_id, replicate, seed, time, " OUTCOME_DEFAULT " FROM run WHERE state = 'end-time' ORDER BY "
-     "point_id, replicate",
+    {"censored", "Runs that count and ended at their time: fragments may still have been breaking.",
+     "SELECT point_id, run_id, replicate, seed, time, " OUTCOME_DEFAULT
+     " FROM runs WHERE counts = 1 AND state = 'end-time' ORDER BY point_id, replicate",
      ""},
     {"slowest", "The twenty runs that took longest.",
-     "SELECT run_id, point_id, replicate, seed, wall_time, cpu_time, peak_memory, steps, host, rank FROM run ORDER BY "
+     "SELECT run_id, point_id, replicate, seed, wall_time, cpu_time, peak_memory, steps, host, rank FROM runs ORDER BY "
      "wall_time DESC, point_id, replicate LIMIT 20",
      ""},
     {"cost", "Time and memory per point.",
      "SELECT point_id, count(*) AS runs, total(wall_time) AS wall_time, avg(wall_time) AS wall_time_mean, "
-     "max(wall_time) AS wall_time_max, max(peak_memory) AS peak_memory FROM run GROUP BY point_id ORDER BY wall_time "
+     "max(wall_time) AS wall_time_max, max(peak_memory) AS peak_memory FROM runs GROUP BY point_id ORDER BY wall_time "
      "DESC",
      ""},
     {"progress", "Runs stored per session.",
      "SELECT s.session_id, s.started_at, s.ended_at, s.outcome, s.host, count(r.run_id) AS runs, total(r.cpu_time) AS "
-     "cpu_time FROM session s LEFT JOIN run r USING (session_id) GROUP BY s.session_id",
+     "cpu_time FROM session s LEFT JOIN runs r USING (session_id) GROUP BY s.session_id",
      ""},
     {"axes", "The inputs that campaigns varied, and how many values each has.",
      "SELECT a.column_name, a.path, a.unit, (SELECT count(DISTINCT value) FROM point_input i JOIN point USING "

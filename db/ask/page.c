@@ -629,7 +629,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
   TRY(add_quantiles(page, store, error));
   TRY(add_goodness(page, store, error));
   TRY(add_untold(page, store, error));
-  /* canned queries also use the table's name in the store */
+  /* a question to the store may have the table's name */
   TRY(sql_execute(page->store.db, "CREATE VIEW run AS SELECT * FROM runs", doing, error));
   return add_questions(page, error);
 }

@@ -201,6 +201,26 @@ says "3 runs of this store have a result in doubt: see columns doubtful and warn
 printf 'name: liquid\nscene: disruption\nset: {fidelity.particles: 300, fidelity.projectile_spacing: 0.5, stop.end_time: 9 us}\nvary: {target.strength: [true, false]}\nseeds: {per_point: 2}\nstore: liquid.db\n' >liquid.yaml
 expect 0 "$clast" run liquid.yaml -j 2 --quiet
 same "$(number liquid.db "select (select count(*) from run where largest_fraction >= 0) || ' ' || (select count(largest_fraction) from runs) || ' ' || count(largest_fraction_mean) || ' ' || count(largest_fraction_sd) || ' ' || count(mean_fragment_mass_mean) from points")" "4 2 1 1 2" "a main result that is withheld"
+# No ready question shows such a value: the table gets one that would be seen.
+cp liquid.db raw.db
+python - "$clast" <<'PY' || fail "a ready question shows a value that is withheld, or a run that is excluded"
+import json, sqlite3, subprocess, sys
+with sqlite3.connect("raw.db") as db:
+    db.execute("UPDATE run SET largest_fraction = 0.424242, state = 'end-time' WHERE instr(warnings, 'liquid')")
+def ask(*words):
+    return subprocess.run([sys.argv[1], "query", *words], capture_output=True, text=True, check=True).stdout
+shown = {}
+for query in json.loads(ask("--list", "--json")):
+    given = [f"--with={name}={3 if name == 'run' else 2}" for name in query["with"].replace(",", " ").split()]
+    shown[query["name"]] = "0.424242" in ask("raw.db", "--named", query["name"], *given, "--csv")
+assert len(shown) > 12 and not any(shown.values()), shown
+stats, censored = (json.loads(ask("raw.db", "--named", name, "--json")) for name in ("point-stats", "censored"))
+assert [row["mean"] is None for row in stats] == [False, True] and [row["n"] for row in stats] == [2, 2], stats
+assert [row["largest_fraction"] is None for row in censored] == [row["point_id"] == 2 for row in censored] == [False, False, True, True], censored
+subprocess.run([sys.argv[1], "exclude", "raw.db", "1", "--reason", "a test"], capture_output=True, check=True)
+assert {row["run_id"] for row in json.loads(ask("raw.db", "--named", "censored", "--json"))} == {2, 3, 4}
+PY
+ok "ready questions and withheld values"
 expect 0 "$clast" merge kinds.db withheld.db liquid.db # masses per metre beside others
 expect 0 "$clast" query kinds.db "select engine, total_mass from runs"
 grep -q 'total_mass *$' out || fail "one unit for masses of two kinds"
@@ -332,4 +352,4 @@ assert 1 < value("runs needed") / (40 / n) / (1.96 * sd / 0.03) ** 2 < 1.1, (row
 assert value("runs needed, seeds.until") % 10 == 0 and value("runs needed, seeds.until") > value("runs needed"), rows
 PY
 ok "values that runs lack"
-done_after 137
+done_after 138
