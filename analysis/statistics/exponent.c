@@ -32,16 +32,71 @@ void exponent_bins_inside(struct exponent_window window, int *first, int *end) {
   *end = isinf(window.upper) ? INT32_MAX : spectrum_bin(window.upper);
 }
 
+enum { FINEST = 1000, PAIRS = 50 }; /* steps below lower / FINEST change no distance */
+
+static bool is_multiple(double mass, double step, double lower) {
+  return fabs(mass - step * round(mass / step)) < 1e-6 / FINEST * lower + 1e-9 * mass;
+}
+
+/* The greatest mass that both masses are multiples of (Euclid), or 0. */
+static double common_divisor(double a, double b, double lower) {
+  while (b > lower / FINEST) {
+    if (is_multiple(a, b, lower))
+      return b;
+    const double rest = fmod(a, b);
+    a = b;
+    b = rest;
+  }
+  return 0;
+}
+
+double exponent_step(size_t n, const double *masses, size_t begin, size_t end, double lower) {
+  double best = 0;
+  for (size_t i = 0, pairs = 0; i + 1 < n && pairs < PAIRS; i++) {
+    const double heavier = masses[i], lighter = masses[i + 1];
+    if (is_multiple(heavier, lighter, lower) && heavier < 1.5 * lighter)
+      continue; /* equal */
+    pairs++;
+    const double step = common_divisor(heavier, lighter, lower);
+    size_t multiples = 0;
+    for (size_t k = begin; step > best && k < end; k++)
+      multiples += is_multiple(masses[k], step, lower);
+    if (step > best && 5 * multiples >= 4 * (end - begin))
+      best = step;
+  }
+  return best;
+}
+
+/* The part of a bin that counts: the whole bin, or from half an element below its first whole number of elements to
+ * half an element above its last one. Empty: low = high. */
+static void bin_part(int bin, double element, double *low, double *high) {
+  *low = spectrum_edge(bin);
+  *high = spectrum_edge(bin + 1);
+  if (element > 0) {
+    const double from = ceil(*low / element), to = ceil(*high / element);
+    *low = element * (from - 0.5);
+    *high = element * (to - 0.5);
+  }
+}
+
+bool exponent_bin_may_be_empty(int bin, double element) {
+  double low, high;
+  bin_part(bin, element, &low, &high);
+  return low == high;
+}
+
 /* Kun & Herrmann (1999) section 3.3: a straight line through log10 of each bin's density (count over width) against
  * log10 of its middle. Every non-empty bin has the same weight. The standard error is that of a slope, from the scatter
  * of the bins about the line. */
-static void least_squares(size_t n, const struct spectrum_bin_row *bins, int first, int end, struct exponent *out) {
+static void least_squares(size_t n, const struct spectrum_bin_row *bins, double element, int first, int end,
+                          struct exponent *out) {
   double points = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
   for (size_t i = 0; i < n; i++) {
     if (bins[i].bin < first || bins[i].bin >= end || bins[i].count <= 0)
       continue;
-    double low = spectrum_edge(bins[i].bin), high = spectrum_edge(bins[i].bin + 1);
-    double x = (bins[i].bin + 0.5) / SPECTRUM_BINS_PER_DECADE, y = log10((double)bins[i].count / (high - low));
+    double low, high;
+    bin_part(bins[i].bin, element, &low, &high);
+    double x = 0.5 * log10(low * high), y = log10((double)bins[i].count / (high - low));
     points++; /* Welford's update avoids cancellation */
     double dx = x - mean_x, dy = y - mean_y;
     mean_x += dx / points;
@@ -68,7 +123,7 @@ static status check(enum exponent_method method, struct exponent_window window, 
   return STATUS_OK;
 }
 
-status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, struct exponent_window window,
+status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, double element, struct exponent_window window,
                          struct exponent *out, struct error *error) {
   TRY(check(EXPONENT_LEAST_SQUARES, window, out, error));
   int first, end;
@@ -79,20 +134,22 @@ status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, struct e
   for (size_t i = 0; i < n; i++)
     if (bins[i].bin >= first && bins[i].bin < end)
       out->n += bins[i].count;
-  least_squares(n, bins, first, end, out);
+  least_squares(n, bins, element, first, end, out);
   return STATUS_OK;
 }
 
-static status fit_from_masses_by_bins(size_t n, const double *masses, struct exponent_window window,
-                                      struct exponent *out, struct error *error) {
+/* masses: descending, in the window. */
+static status fit_by_bins(size_t n, const double *masses, struct exponent_window window, struct exponent *out,
+                          struct error *error) {
+  const double element = exponent_step(n, masses, 0, n, window.lower);
   struct spectrum_bin_row few[256]; /* 256 bins are 25 decades: enough without an allocation */
   const size_t count = spectrum_fill(n, masses, few, 256);
   if (count <= 256)
-    return exponent_fit_bins(count, few, window, out, error);
+    return exponent_fit_bins(count, few, element, window, out, error);
   OWNED struct spectrum_bin_row *rows = NULL;
   TRY(memory_array(&rows, count, sizeof *rows, "the bins of an exponent", error));
   spectrum_fill(n, masses, rows, count);
-  return exponent_fit_bins(count, rows, window, out, error);
+  return exponent_fit_bins(count, rows, element, window, out, error);
 }
 
 /* Copies the masses in the window to `inside`, descending; returns their number. */
@@ -154,12 +211,11 @@ static void fit_with_cutoff(size_t n, const double *masses, double upper, struct
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
                     struct exponent *out, struct error *error) {
   TRY(check(method, window, out, error));
-  if (method == EXPONENT_LEAST_SQUARES)
-    return fit_from_masses_by_bins(n, masses, window, out, error);
-
   OWNED double *inside = NULL;
   TRY(memory_array(&inside, n, sizeof *inside, "the masses of an exponent", error));
   const size_t count = select_sorted(n, masses, window, inside);
+  if (method == EXPONENT_LEAST_SQUARES)
+    return fit_by_bins(count, inside, window, out, error);
   out->n = (int64_t)count;
   double seen[EXPONENT_LEAST_FRAGMENTS];
   size_t different = 0;

@@ -19,6 +19,7 @@ struct prepared {
   struct exponent_window window;  /* LEAST_SQUARES: the same for all runs */
   int first_bin;                  /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
   size_t bins;
+  double element; /* LEAST_SQUARES: kg, masses of the windows are whole numbers of it; 0: they are not */
   int64_t *counts;
   struct spectrum_bin_row *total, *rows; /* bins of all runs; bins of the runs in one fit */
 };
@@ -80,10 +81,15 @@ static status count_bins(struct prepared *p, const struct pooled_runs *runs, str
   TRY(memory_array(&p->total, p->bins, sizeof *p->total, for_runs, error));
   TRY(memory_array(&p->rows, p->bins, sizeof *p->rows, for_runs, error));
   const double lower = spectrum_edge(p->first_bin), upper = spectrum_edge(end);
+  size_t most = 0; /* the run with most fragments shows the mass of a particle; it is nearly the same in all runs */
   for (size_t r = 0; r < runs->count; r++) {
-    const size_t stop = window_end(runs, r, lower);
-    for (size_t i = window_end(runs, r, upper); i < stop; i++)
+    const size_t begin = window_end(runs, r, upper), stop = window_end(runs, r, lower);
+    for (size_t i = begin; i < stop; i++)
       p->counts[r * p->bins + (size_t)(spectrum_bin(runs->masses[i]) - p->first_bin)]++;
+    if (stop - begin > most) {
+      most = stop - begin;
+      p->element = exponent_step(most, runs->masses + begin, 0, most, lower);
+    }
   }
   for (size_t j = 0; j < p->bins; j++) {
     p->total[j].bin = p->first_bin + (int)j;
@@ -128,9 +134,9 @@ static void fit_bins(struct prepared *p, size_t begin, size_t end, struct expone
     p->rows[j] = p->total[j];
     for (size_t r = begin; r < end; r++)
       p->rows[j].count -= p->counts[r * p->bins + j];
-    filled = filled && p->rows[j].count > 0;
+    filled = filled && (p->rows[j].count > 0 || exponent_bin_may_be_empty(p->rows[j].bin, p->element));
   }
-  exponent_fit_bins(p->bins, p->rows, p->window, fit, NULL);
+  exponent_fit_bins(p->bins, p->rows, p->element, p->window, fit, NULL);
   if (!filled)
     fit->beta = fit->standard_error = NAN;
 }
@@ -522,43 +528,11 @@ static double distance_of(const struct windows *windows, struct draw *draw, doub
 /* ---- Masses that are whole numbers of a particle's: most fragments of ten particles weigh the same. Such steps are
  * far from any smooth law, so the draws need them, too. ---- */
 
-enum { FINEST = 1000, PAIRS = 50 }; /* steps below lower / FINEST change no distance */
-
-static bool is_multiple(double mass, double step, double lower) {
-  return fabs(mass - step * round(mass / step)) < 1e-6 / FINEST * lower + 1e-9 * mass;
-}
-
-/* The greatest mass that both masses are multiples of (Euclid), or 0. */
-static double common_divisor(double a, double b, double lower) {
-  while (b > lower / FINEST) {
-    if (is_multiple(a, b, lower))
-      return b;
-    const double rest = fmod(a, b);
-    a = b;
-    b = rest;
-  }
-  return 0;
-}
-
-/* The greatest mass that four of five fragments in the window of run r are multiples of, or 0. Others may hold
- * particles of another body. Neighbours that differ show it. */
 static double step_of_run(const struct pooled_runs *runs, size_t r, double lower) {
   size_t begin, end;
-  double best = 0;
+  const size_t first = runs->first[r];
   pooled_window(runs, r, lower, &begin, &end);
-  for (size_t i = runs->first[r], pairs = 0; i + 1 < runs->first[r + 1] && pairs < PAIRS; i++) {
-    const double heavier = runs->masses[i], lighter = runs->masses[i + 1];
-    if (is_multiple(heavier, lighter, lower) && heavier < 1.5 * lighter)
-      continue; /* equal */
-    pairs++;
-    const double step = common_divisor(heavier, lighter, lower);
-    size_t multiples = 0;
-    for (size_t k = begin; step > best && k < end; k++)
-      multiples += is_multiple(runs->masses[k], step, lower);
-    if (step > best && 5 * multiples >= 4 * (end - begin))
-      best = step;
-  }
-  return best;
+  return exponent_step(runs->first[r + 1] - first, runs->masses + first, begin - first, end - first, lower);
 }
 
 /* Few fragments may all be multiples of several particles. The run with most fragments shows the particle's mass; it is

@@ -287,9 +287,15 @@ struct exponent exponent_unknown(enum exponent_method method, struct exponent_wi
  * lower < upper, an unknown method. STATUS_MEMORY. */
 status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
                     struct exponent *out, struct error *error);
-/* Least squares from bins alone, in ascending order. */
-status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, struct exponent_window window,
+/* Least squares from bins alone, in ascending order. element (kg): where masses are whole numbers of it, the width
+ * of a bin is that of the whole numbers inside, each one wide; a bin from 6.3 to 7.9 elements is one wide. 0: they are
+ * not. */
+status exponent_fit_bins(size_t n, const struct spectrum_bin_row *bins, double element, struct exponent_window window,
                          struct exponent *out, struct error *error);
+/* The greatest mass that four of five of the masses begin .. end - 1 are multiples of, or 0. Others may hold particles
+ * of another body. Of a run's n masses (descending), those that differ show it; `lower` is the window's end. */
+double exponent_step(size_t n, const double *masses, size_t begin, size_t end, double lower);
+bool exponent_bin_may_be_empty(int bin, double element); /* no whole number of elements lies in it */
 
 /* The bins wholly inside a window: first <= bin < end; *end = INT32_MAX for an open window. */
 void exponent_bins_inside(struct exponent_window window, int *first, int *end);

@@ -235,14 +235,14 @@ static status draw_picture(struct store *store, const struct curves *curves, con
                                           {"F(L), fragments per run and m", "N(>L), fragments per run"}};
   const struct spectrum_choice *choice = curves->choice;
   const struct measured *measured = choice->measured;
+  int dimensions;
+  TRY(ask_pool_dimensions(store, &dimensions, error));
   const bool sizes = choice->density > 0;
   struct picture_series series[PICTURE_SERIES];
   OWNED struct pooled_bin *bins = NULL;
   size_t count = 0;
   char caption[CAPTION], label[400], title[300], scenes[200];
-  struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, 3}};
-  if (curves->count)
-    form = curves->curve[0].form;
+  const struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, dimensions}};
   for (; count < curves->count; count++)
     series[count] = series_of(&curves->curve[count]);
   if (measured && measured->n)

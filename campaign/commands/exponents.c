@@ -7,7 +7,7 @@
 #include "campaign/terminal/words.h"
 
 struct options {
-  int64_t draws;
+  int64_t draws, dimensions;
 };
 
 enum { UNTOLD = 400 };
@@ -20,13 +20,14 @@ static double with_two_digits(double number) {
 
 struct seen {
   bool flat;           /* beta is 1 or less: numbers above a mass are no power law then */
+  bool unsized;        /* the dimensions of a program's model are not known */
   char untold[UNTOLD]; /* why exponents are not told, */
   const char *open;    /* and why one has no interval; NULL: each has */
 };
 
-/* Prints a point's exponent under its four names, with the goodness of its fit by `draws` samples of the bootstrap.
+/* Prints a point's exponent under its four names, with the goodness of its fit.
  * Points without estimates have no row. */
-static status print_pool(struct table *table, size_t draws, bool people, const struct ask_pools *pools,
+static status print_pool(struct table *table, const struct options *options, bool people, const struct ask_pools *pools,
                          const struct ask_pool *pool, struct seen *seen, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent fit;
@@ -36,7 +37,7 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
     return STATUS_OK; /* the store has no estimates of its runs */
   const struct pooled_runs *runs = &pool->data.runs;
   TRY(pooled_exponent(runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &fit, error));
-  TRY(pooled_goodness(runs, lower, draws, &goodness, error));
+  TRY(pooled_goodness(runs, lower, (size_t)options->draws, &goodness, error));
   TRY(pooled_rivals(runs, lower, &rivals, error));
   print_pool_cells(table, pools, pool);
   table_reals(table, 2, (const double[]){lower, pool->data.complete_mass});
@@ -51,9 +52,12 @@ static status print_pool(struct table *table, size_t draws, bool people, const s
     fit.fit.beta = NAN;
   const double any = 1; /* a density: the exponents by size do not depend on it */
   seen->flat |= fit.fit.beta <= 1;
+  const int dimensions = pool->data.dimensions ? pool->data.dimensions : (int)options->dimensions;
+  seen->unsized |= dimensions == 0;
   for (int form = 0; form < 4; form++) {
-    const struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
-    const bool none = people && form % 2 && fit.fit.beta <= 1;
+    struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
+    named.size.dimensions = dimensions;
+    const bool none = (people && form % 2 && fit.fit.beta <= 1) || (form / 2 && dimensions == 0);
     table_rests_on(table, &pool->doubts);
     table_fixed(table, none ? (double)NAN : pooled_spectrum_exponent(&named, fit.fit.beta),
                 people ? pooled_exponent_decimals(&fit) : 2);
@@ -95,7 +99,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   struct seen seen = {.flat = false};
   for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     ask_doubts_add(&doubts, &pool->doubts);
-    TRY(print_pool(table, (size_t)options->draws, table_for_people(line->format), &pools, pool, &seen, error));
+    TRY(print_pool(table, options, table_for_people(line->format), &pools, pool, &seen, error));
   }
   TRY(ask_pools_end(&pools));
   TRY(table_end(table, error));
@@ -106,15 +110,18 @@ static status ask(struct store *store, const struct command_line *line, struct e
         "clast: exponents by maximum likelihood on masses, from the lightest mass on, which is never below the "
         "complete mass. p below 0.1: a power law does not fit. p of cut-off below 0.05: one with an exponential "
         "cut-off fits better; largest included: the same with the largest fragments, where they belong to the "
-        "law%s%s%s%s%s",
+        "law%s%s%s%s%s%s",
         *seen.untold ? ". -: " : "", seen.untold, seen.open ? ". ~: no interval, " : "", seen.open ? seen.open : "",
-        seen.flat ? ". N(>m), N(>L) -: numbers above a mass follow no power law where F(m) is at most 1" : "");
+        seen.flat ? ". N(>m), N(>L) -: numbers above a mass follow no power law where F(m) is at most 1" : "",
+        seen.unsized ? ". F(L), N(>L) -: clast does not know the dimensions of a program's model (--dimensions 2 or 3)"
+                     : "");
   }
   return STATUS_OK;
 }
 
 static const struct option_row option_rows[] = {
     OPTION_ROW_INTEGER("draws", 0, "N", struct options, draws, 100, 1000000, "2500"),
+    OPTION_ROW_INTEGER("dimensions", 0, "D", struct options, dimensions, 2, 3, 0),
 };
 
 COMMAND(exponents, "results", "STORE", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows),

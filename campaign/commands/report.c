@@ -44,11 +44,11 @@ static status add_facts(struct making *making, const char *name, const char *pat
   const time_t seconds = time(NULL);
   strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
   snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);
-  int dimensions;
-  TRY(ask_pool_dimensions(making->store, &dimensions, error));
+  char kg[64];
+  TRY(ask_columns_unit(making->store, OUTCOME_NAME(mean_fragment_mass), kg, sizeof kg, error));
   const char *facts[][2] = {{"store", name},
                             {"file", path},
-                            {"mass_unit", ask_pool_mass_unit(dimensions)},
+                            {"mass_unit", *kg ? kg : "kg or kg/m"},
                             {"made_at", now},
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
                             {"default_quantity", quantity},

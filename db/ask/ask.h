@@ -620,7 +620,8 @@ const struct ask_pool *ask_pools_next(struct ask_pools *pools);
 /* The last call: frees the pools and returns their status. */
 status ask_pools_end(struct ask_pools *pools);
 
-/* Dimensions of the engine of the store's first point, 2, 3, or 0 (not known): masses of 2 are kg per metre. */
+/* Dimensions of the engine of the chosen runs, 2, 3, or 0 (not known): masses of 2 are kg per metre. STATUS_USAGE: some
+ * are in the plane, and others not. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
 const char *ask_pool_mass_unit(int dimensions); /* "kg/m", "kg" */
 

@@ -210,9 +210,21 @@ struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *ch
 }
 
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error) {
-  ANSWER answer = answer_to(store, error, "SELECT engine FROM point ORDER BY point_id LIMIT 1");
-  const struct engine_kind *kind = answer_next(&answer) ? engine_find(answer_text(&answer, 0), NULL) : NULL;
-  *dimensions = kind ? kind->dimensions : 3;
+  bool plane = false, other = false;
+  ANSWER answer = answer_to(store, error,
+                            "SELECT DISTINCT engine FROM point WHERE point_id IN (SELECT point_id FROM run)");
+  *dimensions = 3;
+  while (answer_next(&answer)) {
+    const struct engine_kind *kind = engine_find(answer_text(&answer, 0), NULL);
+    *dimensions = kind ? kind->dimensions : 3;
+    *(*dimensions == 2 ? &plane : &other) = true;
+  }
+  if (answer_status(&answer) == STATUS_OK && plane && other)
+    return status_fail(
+        error, STATUS_USAGE,
+        "the store has runs of several engines, some in the plane, with masses in kg/m, and some with masses "
+        "in kg: their spectra have no common axis. Choose runs of one kind with --campaign, --point or "
+        "--where");
   return answer_end(&answer);
 }
 

@@ -157,6 +157,13 @@ expect 0 "$clast" run grains-runs.yaml --seeds 2 $word
 expect 0 "$clast" exponents grains.db --draws 100
 ! grep -q 'follow no power law' err || fail "an exponent of 2 is called flat"
 says "~: no interval, all runs are equal"; grep -q ' 2.01~ ' out || fail "no mark at an exponent without an interval"
+says "does not know the dimensions of a program's model (--dimensions 2 or 3)"
+expect 0 "$clast" exponents grains.db --draws 100 --csv
+same "$(sed -n 2p out | cut -d , -f 9-11)" ",," "exponents by size in unknown dimensions"
+for d in 2 3; do
+  expect 0 "$clast" exponents grains.db --draws 100 --csv --dimensions $d
+  same "$(awk -F , -v d=$d 'NR == 2 {print ($10 - d * ($6 - 1)) ^ 2 < 1e-4}' out)" 1 "exponent by size in $d dimensions"
+done
 # A power law that ends at 20 kg: windows that end at the largest fragment hide it.
 scene ends 'fragments: {name: m, unit: kg}' <<'SH'
 awk 'BEGIN { for (i = 0.5; i < 2000; i++) m = m sprintf(", %.17g", 1 / (i / 2000 + 0.05)); print "{\"x\": 1, \"m\": [" substr(m, 2) ", 19, 19.2, 19.4, 19.6]}" }'

@@ -148,6 +148,9 @@ for of in spectrum exponents; do
   expect 0 "$clast" $of kinds.db
   ! sed '/^clast/d' out | grep -q "kg" || fail "one unit of masses in the plane and in space: $(head -2 out)"
 done
+expect 64 "$clast" spectrum kinds.db --picture kinds.png
+says "some in the plane, with masses in kg/m"
+expect 0 "$clast" spectrum kinds.db --campaign fixed --picture kinds.png
 # The difference of an exponent is of the common seeds, too: equal runs have none, whatever others a side has.
 sed 's/0.05 ms/1 ms/; s/per_point: 3/per_point: 9/; s/fixed/nine/' fixed.yaml >nine.yaml
 sed 's/per_point: 9/per_point: 7/; s/nine/seven/' nine.yaml >seven.yaml
@@ -393,4 +396,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 155
+done_after 157

@@ -272,7 +272,7 @@ static void of_masses(void) {
     for (size_t b = 0; b < filled; b += 4)
       SAY("filled", bins[b].bin, (double)bins[b].count, bins[b].mass);
     struct exponent fit;
-    if (exponent_fit_bins(filled, bins, (struct exponent_window){1e-3, 0.1}, &fit, NULL) == STATUS_OK)
+    if (exponent_fit_bins(filled, bins, 0, (struct exponent_window){1e-3, 0.1}, &fit, NULL) == STATUS_OK)
       exponents("of bins", &fit);
     for (int kind = POWER_LAW_PURE; kind <= POWER_LAW_LOGNORMAL; kind++) {
       struct power_law_group groups[RUNS + 1] = {0}; /* the last one is empty: the rivals have it */
