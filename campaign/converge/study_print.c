@@ -310,20 +310,41 @@ static void print_seen(const struct convergence_limit_row *limit, const struct s
               study_show_error(found->rows[l].resolution, found->rows[l].open, text));
 }
 
-/* The levels without a mean, each with its reason: no time, not asked for, or all results withheld or missing. */
+static bool was_run(const struct study *study, const struct study_ladder *ladder, size_t level) {
+  for (int64_t s = 0; s < study->rule.most_seeds; s++)
+    if (ladder->ran[level][s])
+      return true;
+  return false;
+}
+
+/* Has a run of the level a result? An exponent belongs to all of them. */
+static bool has_result(const struct study *study, const struct study_ladder *ladder, size_t level, size_t quantity) {
+  for (int64_t s = 0; s < study->rule.most_seeds; s++)
+    if (isfinite(ladder->values[quantity][level][s]))
+      return true;
+  return !study->quantity[quantity].row && was_run(study, ladder, level);
+}
+
+/* The levels without a mean, each with its reason: no time, not asked for, or all results withheld or missing. Levels
+ * of a knob that had no time may have results all the same: its own level is one of the other knobs, too, and the store
+ * may have runs. */
 static status print_missing(const struct printing *printing, const struct study_ladder *ladder, size_t quantity,
                             const struct study_found *found, FILE *out, struct error *error) {
   struct ask_doubts here, all = {0};
   char ran[KNOB_LEVELS * 200] = "", words[256] = "";
-  char late[sizeof ran] = "";
+  char late[sizeof ran] = "", lone[sizeof ran] = "";
   for (size_t l = 0; l < found->count; l++) {
     const struct convergence_row *row = &found->rows[l];
     const bool by_law = row->base && !row->open && found->limit.verdict == LIMIT_SEEN;
     const char *own = by_law ? " *, whose error follows from the law" : row->base ? " *" : "";
     if (row->n > 0)
       continue;
-    TRY(read_doubts(printing, ladder, l, quantity, &here, error));
-    if (here.runs > 0 && !ladder->left_out[l]) {
+    if (ladder->seeds == 0 && has_result(printing->study, ladder, l, quantity)) {
+      text_append(lone, sizeof lone, "%s %s%s", *lone ? "," : "", row->setting, own);
+      continue;
+    }
+    if (was_run(printing->study, ladder, l) && !ladder->left_out[l]) {
+      TRY(read_doubts(printing, ladder, l, quantity, &here, error));
       text_append(ran, sizeof ran, "%s %s%s", *ran ? "," : "", row->setting, own);
       ask_doubts_add(&all, &here);
       continue;
@@ -341,6 +362,9 @@ static status print_missing(const struct printing *printing, const struct study_
     fprintf(out, "; run, but results are withheld (%s):%s", words, ran);
   else if (*ran)
     fprintf(out, "; run, but without a usable result:%s", ran);
+  if (*lone)
+    fprintf(out, "; with results, but a comparison takes two levels with %" PRId64 " seeds:%s",
+            printing->study->rule.first_seeds, lone);
   return STATUS_OK;
 }
 
@@ -445,15 +469,16 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   const struct study *study = printing->study;
   const struct study_quantity *what = &study->quantity[quantity];
   const struct scene *base = study->ladder[from].base;
-  const char *unit = what->row ? what->row->unit : NULL;
-  if (unit && strcmp(unit, "kg") == 0)
-    unit = ask_pool_mass_unit(base->kind->dimensions);
+  const char *unit = what->row ? ask_result_unit(what->row, base->kind->dimensions) : NULL;
   const bool named = unit && strcmp(unit, "1") != 0;
   bool ran = false, any = false; /* with and without a result */
+  bool results = false;          /* of a knob that had no time to compare them */
   for (size_t i = 0; i < count; i++) {
     ran |= has_runs(&found[i]);
-    for (size_t l = 0; l < found[i].count; l++)
+    for (size_t l = 0; l < found[i].count; l++) {
       any |= isfinite(study->ladder[from + i].wall[l]);
+      results |= has_result(study, &study->ladder[from + i], l, quantity);
+    }
   }
   if (from || quantity)
     putchar('\n');
@@ -466,7 +491,9 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   design_axis_show_point(study->varied_count, study->varied, base->inputs, point, sizeof point);
   if (!ran)
     words_print(stdout, "", "%s%s%s: %s", base->name, *point ? ", " : "", point,
-                any ? "no level has a result" : "nothing was run in the time given");
+                results ? "no knob has all seeds of two levels, so none is compared"
+                : any   ? "no level has a result"
+                        : "nothing was run in the time given");
   if (!any)
     return STATUS_OK;
   if (ran)

@@ -362,6 +362,8 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
   study->budget_spent |= seconds_left(rounds) < 0;
   rounds->ladder = choose_ladder(rounds);
   if (!rounds->ladder) {
+    for (size_t i = 0; i < study->ladder_count; i++) /* knobs share their own level */
+      TRY(study_read(study, &study->ladder[i], scheduler->store, error));
     TRY(tell_replaced(rounds, scheduler->store, error));
     return study_store(study, scheduler->store, error);
   }

@@ -168,6 +168,21 @@ const char *design_axis_show(const struct design_axis *axis, const struct field_
   return text;
 }
 
+const char *design_axis_print(const struct design_axis *axis, const struct field_value *value, char *text,
+                              size_t size) {
+  struct unit unit;
+  struct field_value back;
+  struct error error;
+  const char *shown = *axis->unit ? axis->unit : axis->row->unit && strcmp(axis->row->unit, "rad") == 0 ? "deg" : "";
+  if (value->kind == FIELD_REAL && *shown && unit_parse(shown, &unit, NULL) == STATUS_OK) {
+    snprintf(text, size, "%.12g %s", value->number / unit.factor, shown);
+    if (field_parse(axis->row, text, &back, &error) == STATUS_OK && back.number == value->number)
+      return text;
+  }
+  field_print(axis->row, value, text, size);
+  return text;
+}
+
 const char *design_axis_show_point(size_t count, const struct design_axis *axes, const void *inputs, char *text,
                                    size_t size) {
   *text = '\0';

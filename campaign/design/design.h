@@ -48,6 +48,9 @@ void design_axis_follow(const struct design_axis *axis, const struct field_value
                         struct field_value *value);
 /* A value in the campaign's unit ("1e+28 cm^-3"), else as field_show() has it. Returns `text`. */
 const char *design_axis_show(const struct design_axis *axis, const struct field_value *value, char *text, size_t size);
+/* The exact value for a command: in the unit of the axis (angles without one: degrees) where this reads back as the
+ * same number, else SI. Returns text. */
+const char *design_axis_print(const struct design_axis *axis, const struct field_value *value, char *text, size_t size);
 /* A point as people read it: "strain 3 %, energy 100 J/m", by the last words of the paths. inputs: of its scene. "": no
  * axes. */
 const char *design_axis_show_point(size_t count, const struct design_axis *axes, const void *inputs, char *text,

@@ -188,6 +188,13 @@ static status read_above_zero(const char *option, const char *text, const char *
   return STATUS_OK;
 }
 
+struct field find_level_row(const struct find *find) {
+  struct field real = *find->quantity.row;
+  real.kind = FIELD_REAL;
+  real.unit = ask_result_unit(&real, find->base->kind->dimensions);
+  return real;
+}
+
 static status find_level(struct find *find, const struct find_request *request, struct error *error) {
   const char *name = request->quantity ? request->quantity : find->campaign->quantity;
   struct ask_specimens_quantity *quantity = &find->quantity;
@@ -198,8 +205,7 @@ static status find_level(struct find *find, const struct find_request *request, 
   if (!request->level)
     return status_fail(error, STATUS_USAGE, "--level is missing: the value of %s that is looked for",
                        quantity->row->path);
-  struct field real = *quantity->row; /* the mean of whole numbers need not be one */
-  real.kind = FIELD_REAL;
+  const struct field real = find_level_row(find);
   TRY(read_end(&real, "level", request->level, &find->level, error));
   find->share = NAN;
   if (!request->share)
@@ -350,7 +356,11 @@ static status add_round(struct find *find, struct store *store, struct error *er
                                      .y = find->y,
                                      .level = find->level,
                                      .share = find->share};
-  TRY(crossing_find(&data, &find->found, error));
+  const status code = crossing_find(&data, &find->found, error);
+  if (code != STATUS_OK) {
+    uncertainty_doubts(&find->doubts, stderr); /* why runs have no result */
+    return code;
+  }
   find->failed = find->runs - find->found.n;
   const struct crossing *found = &find->found; /* widths at runs that grow by a factor are enough */
   const bool grown = find->widths == 0 || 5 * find->runs >= 7 * find->width[find->widths - 1].runs;

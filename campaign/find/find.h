@@ -65,6 +65,9 @@ void find_value(const struct find *find, double x, struct field_value *value);
 double find_unit(const struct find *find, const char **shown);
 double find_place(const struct find *find, const struct field_value *value);
 
+/* The row of the level: a real number, as the mean of whole numbers need not be one, in the unit of tables. */
+struct field find_level_row(const struct find *find);
+
 /* The name of the rounds of all searches along the input. */
 void find_name(const struct find *find, char *name, size_t size);
 

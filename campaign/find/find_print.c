@@ -10,6 +10,7 @@
 #include "schemas/unit.h"
 
 static const double LITTLE = 0.9; /* of a width, after twice the runs: 0.71 is usual */
+static const double FASTER = 0.7; /* of the width by the root law: it does not hold yet */
 static const double APART = 0.2;  /* of the bracket; less than the first values are */
 enum { BINS = 10, SENTENCE = 2048 };
 
@@ -50,8 +51,7 @@ const char *find_show_within(const struct find *find, double x, double low, doub
 /* ---- the sentence ---- */
 
 static void show_level(const struct find *find, char level[FIND_TEXT]) {
-  struct field real = *find->quantity.row;
-  real.kind = FIELD_REAL;
+  const struct field real = find_level_row(find);
   field_show(&real, &(struct field_value){.kind = FIELD_REAL, .number = find->level}, level, FIND_TEXT);
 }
 
@@ -119,6 +119,18 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
                 input, found->low < 0 ? high : low);
     break;
   }
+}
+
+/* An interval that the bracket cuts: the input may go farther, and the crossing be there. */
+static void write_end(const struct find *find, char text[SENTENCE]) {
+  const bool one = find->found.kind == CROSSING_FOUND;
+  const bool low = one && find->found.low <= 0 && find->from > find->input->minimum;
+  const bool high = one && find->found.high >= 1 && find->to < find->input->maximum;
+  if (low || high)
+    text_append(text, SENTENCE, " The interval ends where the bracket does, and the crossing may be beyond it: %s.",
+                !high  ? "a lower --from tells"
+                : !low ? "a higher --to tells"
+                       : "a lower --from and a higher --to tell");
 }
 
 /* Is the answer that nothing crosses? */
@@ -269,8 +281,7 @@ static status read_resolution(const struct find *find, struct store *store, cons
     return STATUS_CONTENT;
   TRY(store_point_find(store, scene, &point, error));
   TRY(ask_resolution(point ? store : NULL, point, column, resolution, error));
-  field_print(find->input, place, value, sizeof value);
-  snprintf(set, sizeof set, "%s=%s", find->input->path, value);
+  snprintf(set, sizeof set, "%s=%s", find->input->path, design_axis_print(&find->axis, place, value, sizeof value));
   const size_t size = sizeof resolution->command;
   resolution->command[0] = '\0';
   if (!text_append(resolution->command, size, "%s --set", find->words) ||
@@ -312,29 +323,41 @@ static status tell_resolution(const struct find *find, struct error *error) {
   return STATUS_OK;
 }
 
-/* The runs do not suffice: how many more an interval of the width asked for needs, and whether the last ones helped. */
+/* The runs that an interval of the width asked for needs. They are told from two widths, of the runs and of half of
+ * them or fewer, that fall as the root of the number of runs. The first rounds halve gaps between places, and widths
+ * fall faster. 0: not told. */
+static size_t runs_needed(const struct find *find, const struct find_width *before) {
+  const double width = find->found.high - find->found.low;
+  if (find->found.kind != CROSSING_FOUND || !before || width <= find_widest(find))
+    return 0;
+  const double by_root = before->width * sqrt((double)before->runs / (double)find->runs);
+  return width < FASTER * by_root ? 0 : crossing_runs_for(find->runs, width, find_widest(find));
+}
+
+/* The runs do not suffice: how many more are needed, and whether the last ones helped. */
 static void write_more(const struct find *find) {
   const double width = find->found.high - find->found.low;
+  const struct find_width *before = NULL;
   char text[SENTENCE] = "";
+  for (size_t i = 0; i < find->widths; i++)
+    if (2 * find->width[i].runs <= find->runs)
+      before = &find->width[i];
+  const size_t needed = runs_needed(find, before);
+  const bool beyond = needed > FIND_MOST_RUNS || find->most >= FIND_MOST_RUNS;
   if (find->runs < find->most)
     text_append(text, SENTENCE, "The interval is wider than asked, and no round fits into the rest of the %zu runs",
                 find->most);
   else
     text_append(text, SENTENCE, "The interval is wider than asked, and the runs are used up");
-  text_append(text, SENTENCE, ": a larger --max-runs goes on.");
-  const struct find_width *before = NULL;
-  for (size_t i = 0; i < find->widths; i++)
-    if (2 * find->width[i].runs <= find->runs)
-      before = &find->width[i];
-  if (find->found.kind == CROSSING_FOUND && width > find_widest(find)) {
-    const size_t needed = crossing_runs_for(find->runs, width, find_widest(find));
-    if (needed > FIND_MOST_RUNS)
-      text_append(text, SENTENCE, " The width asked for needs more than the %d runs that a search may have",
-                  FIND_MOST_RUNS);
-    else
-      text_append(text, SENTENCE, " The width asked for needs about %zu runs", needed);
-    text_append(text, SENTENCE, ", if the width falls as the root of their number.");
-  }
+  text_append(text, SENTENCE, beyond ? ". A search may have at most %d runs" : ": a larger --max-runs goes on.",
+              FIND_MOST_RUNS);
+  if (needed > FIND_MOST_RUNS)
+    text_append(text, SENTENCE, "; the width asked for needs more, if it falls as the root of their number");
+  else if (needed > 0 && !beyond)
+    text_append(text, SENTENCE, " The width asked for needs about %zu runs, if it falls as the root of their number.",
+                needed);
+  if (beyond)
+    text_append(text, SENTENCE, ": give a larger --within.");
   if (find->found.kind == CROSSING_FOUND && before && width > LITTLE * before->width)
     text_append(text, SENTENCE, " From %zu to %zu runs it became only %.0f %% narrower, so it may take many more.",
                 before->runs, find->runs, fmax(100 * (1 - width / before->width), 0));
@@ -364,6 +387,7 @@ status find_print(const struct find *find, enum table_format format, bool quiet,
   if (!table_for_people(format))
     return print_rows(find, format, error);
   write_sentence(find, text);
+  write_end(find, text);
   words_print(stdout, "", "%s", text);
   if (!find->narrow)
     write_more(find);

@@ -387,12 +387,11 @@ static void tell_study(const struct fit *fit, size_t s, FILE *out) {
     return;
   bool fits = text_append(command, sizeof command, "%s%s", fit->words, shot->set);
   for (size_t i = 0; i < fit->inputs; i++) {
-    const struct field *row = fit->campaign->axes[fit->axis[i]].row;
+    const struct design_axis *axis = &fit->campaign->axes[fit->axis[i]];
     struct field_value own;
     char value[FIELD_TEXT_SIZE], set[2 * FIELD_TEXT_SIZE];
-    field_get(row, shot->scene->inputs, &own);
-    field_print(row, &own, value, sizeof value);
-    snprintf(set, sizeof set, "%s=%s", row->path, value);
+    field_get(axis->row, shot->scene->inputs, &own);
+    snprintf(set, sizeof set, "%s=%s", axis->row->path, design_axis_print(axis, &own, value, sizeof value));
     fits = fits && text_append(command, sizeof command, " --set") && text_append_word(command, sizeof command, set);
   }
   if (fits && text_append(command, sizeof command, " -Q %s", names))

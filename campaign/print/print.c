@@ -45,11 +45,11 @@ static void value_cell(struct table *table, const struct field *row, const void 
 static void print_row(struct table *table, const struct field *row, const void *object, enum condition_mark mark,
                       int dimensions) {
   char meaning[FIELD_TEXT_SIZE];
-  const char *unit = row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
+  const char *unit = ask_result_unit(row, dimensions);
   text_sentence(row->doc, meaning, sizeof meaning);
   table_text(table, row->path);
   value_cell(table, row, object, mark);
-  table_text(table, strcmp(unit, "kg") == 0 ? ask_pool_mass_unit(dimensions) : unit);
+  table_text(table, unit && strcmp(unit, "1") != 0 ? unit : "");
   table_text(table, meaning);
 }
 

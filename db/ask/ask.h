@@ -624,6 +624,8 @@ status ask_pools_end(struct ask_pools *pools);
  * are in the plane, and others not. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
 const char *ask_pool_mass_unit(int dimensions); /* "kg/m", "kg" */
+/* The row's unit, masses as above. NULL: none. */
+const char *ask_result_unit(const struct field *row, int dimensions);
 
 /* The pool in the form that the pooled spectrum needs. Mean and interval are over the runs of a point, or over the
  * points. */

@@ -232,6 +232,10 @@ const char *ask_pool_mass_unit(int dimensions) {
   return dimensions == 2 ? "kg/m" : "kg";
 }
 
+const char *ask_result_unit(const struct field *row, int dimensions) {
+  return row->unit && strcmp(row->unit, "kg") == 0 ? ask_pool_mass_unit(dimensions) : row->unit;
+}
+
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density) {
   return (struct pooled_form){.cumulative = cumulative,
                               .size = {density, pool->data.dimensions},

@@ -469,6 +469,19 @@ expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --seconds 
   --knob grains=3cm,2.2cm,1.6cm,0.06cm --seeds 8 --within off --store slow.db -j 1
 tr '\n' ' ' <out | grep -q 'ended: one round was asked for; without [0-9.]* \*.*; there was no time for 0.0006' || fail "why a level is missing: $(cat out)"
 
+# The own level of a knob without time has the results of another knob, or of a campaign: it is no failed one.
+expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --set stop.end_time='1 ms' --knob grains=1.069cm,0.06cm \
+  --knob time_step=2us,1us --seeds 2 --within off --seconds 10 --store own.db -j 1
+tr '\n' ' ' <out | grep -qF "there was no time for 0.0006; with results, but a comparison takes two levels with 2 seeds: 0.01069 *" ||
+  fail "why the own level is not compared: $(cat out)"
+printf '%s\n' 'name: late' 'scene: disc-explosion' 'set: {stop.end_time: 0.1 ms, charge.energy: 2 kJ/m}' \
+  'vary: {body.diameter: [6 cm, 60 cm]}' 'seeds: {per_point: 2}' 'store: late.db' >late.yaml
+expect 0 "$clast" run late.yaml --quiet
+expect 0 "$clast" converge late.yaml --knob grains=1.069cm,0.12cm --seeds 2 --within off --seconds 10 -j 1
+prints "disc-explosion, diameter 60 cm: no knob has all seeds of two levels, so none is compared"
+# Runs that fail are no lack of time.
+tr '\n' ' ' <out | grep -qF "one round was asked for; run, but without a usable result: 0.0012 " || fail "why a level is missing: $(cat out)"
+
 # A setting finer than any level has the law's error on every screen.
 cat >finer.yaml <<'YAML'
 name: finer
@@ -657,4 +670,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 169
+done_after 172

@@ -46,6 +46,9 @@ assert study.startswith("disc.yaml ") and f"threshold.strain={at} %" in study, s
 PY
 ok "the study advised is at the crossing"
 runs=$(number disc.db "select count(*) from run")
+# After the first round the width does not fall as the root of the runs, and no number of them is told.
+expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.002 --max-runs 20 --quiet
+prints "a larger --max-runs goes on."; ! grep -q "needs about" out || fail "a number of runs after the first round"
 expect 0 "$clast" find "${search[@]}" --plan
 prints "The store has all of this search ($runs runs); a narrower interval"; prints "(0.0 s of processor time)"
 expect 0 "$clast" find disc.yaml --level 0.5 --share 50% --within 0.0001 --plan --json # the other runs: at the places near the crossing
@@ -102,6 +105,15 @@ same "$(number killed.db 'select count(*) from run')" "$runs" "runs after a kill
 expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 0.002 --max-runs "$((runs + 8))"
 says "$runs found in the store"; tr '\n' ' ' <out >line; mv line out
 prints "a larger --max-runs goes on. The width asked for needs about "
+expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --within 1e-6 --max-runs "$((runs + 8))" --quiet
+tr '\n' ' ' <out | grep -qF "A search may have at most 5000 runs; the width asked for needs more, " || fail "the width is beyond a search: $(cat out)"
+! grep -qF -- "--max-runs" out || fail "advice that the next sentence forbids"
+# Masses of discs are per metre.
+expect 0 "$clast" find disc.yaml --level '0.5 kg/m' -Q mean_fragment_mass --max-runs 20
+prints "kg/m"
+# An interval that the bracket cuts is told.
+expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --from 2.5% --to 6% --max-runs 20
+tr '\n' ' ' <out | grep -qF "The interval ends where the bracket does, and the crossing may be beyond it: a lower --from tells." || fail "the cut interval: $(cat out)"
 # The last round takes what is left, to less than a run a place.
 expect 0 "$clast" find disc.yaml --level 0.5 --within 0.0001 --max-runs 47 --store used.db --quiet
 same "$(number used.db "select count(*) between 44 and 47 from run")" 1 "runs of 47"
@@ -147,7 +159,7 @@ set: {body.rows: 4, stop.end_time: 0.01 ms}
 seeds: {per_point: 2}
 store: block.db
 YAML
-expect 0 "$clast" find block.yaml -Q total_mass --level '15 kg' --json
+expect 0 "$clast" find block.yaml -Q total_mass --level '15 kg/m' --json
 python - <<'PY'
 import json, sqlite3
 row, = json.load(open('out'))
@@ -166,9 +178,14 @@ says "marked (!), 34 of 39 runs: step: fidelity.time_step over"
 sed 's/stop.end_time: 4 ms/&, fidelity.time_step: 1 ms/; s/disc.db/failed.db/' disc.yaml >failed.yaml
 expect 1 "$clast" find failed.yaml --level 0.5 --max-runs 20
 says "20 of the first 20 runs failed"
+# Withheld results have their reason, as in tables.
+printf '%s\n' 'name: dusty' 'scene: disruption@draft' 'set: {fidelity.particles: 500, stop.end_time: 20 us}' \
+  'vary: {impact.specific_energy: [1 kJ/kg, 3 kJ/kg]}' >dusty.yaml
+expect 65 "$clast" find dusty.yaml --level 0.4 -Q dust_fraction --max-runs 20 --quiet
+says "withheld, 20 of 20 runs: dust: "; says "runs with a result are at 0 places"; one_error
 
 # Wrong command lines.
-for wrong in "--share 0.5|--level is missing" "--level 1.5|at most 1, got 1.5" "--level nine|expected a number" "--level 0.5 -Q largest_friction|largest_fraction" \
+for wrong in "--share 0.5|--level is missing" "--level 1.5|at most 1, got 1.5" "--level nine|expected a number" "--level 0.5 -Q largest_friction|largest_fraction" "--level 3kg -Q mean_fragment_mass|expected a mass per length" \
   "--level 0.5 --input contact.law|not a number" "--level 0.5 --input charge.energy|no range of charge.energy" \
   "--level 0.5 --from 6% --to 1%|--from must be less than --to" "--level 0.5 --from 3|is a percentage" "--level 0.5 --share 2|between 0 and 1" \
   "--level 0.5 --within -1|above 0" "--level 0.5 --max-runs 3|from 20 to 5000"; do
@@ -191,4 +208,6 @@ prints "The mean of largest_fraction"
 # Places are round in degrees.
 expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --plan
 prints "2 deg, 3 deg, 4 deg, 5 deg, 6 deg"
-done_after 54
+expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --max-runs 20 --store set.db
+tr '\n' ' ' <err | grep -qE "'threshold.angle=[0-9.]+ deg'" || fail "the study advised is in other units: $(cat err)"
+done_after 61

@@ -145,7 +145,7 @@ printf '%s\n' 'name: m' 'source: made up' 'shots:' '  - set: {impact.angle: 30 d
   '    measured: [{quantity: largest_fraction, value: 0.5, error: 0.1}]' >shot.yaml
 expect 0 "$clast" fit shot.yaml own.yaml --rounds 3 -j 2
 study=$(tr '\n' ' ' <out | grep -o '`clast converge [^`]*`' | tr -d '`')
-same "$study" "clast converge own.yaml --set 'impact.angle=30 deg' --set 'impact.specific_energy=2000 J/kg' -Q largest_fraction" "the study of one's own rock"
+same "$study" "clast converge own.yaml --set 'impact.angle=30 deg' --set 'impact.specific_energy=2 kJ/kg' -Q largest_fraction" "the study of one's own rock"
 eval "expect 0 '$clast' ${study#clast} --knob time_step --seeds 2 --within off -j 2 --quiet"
 expect 0 "$clast" fit shot.yaml own.yaml --rounds 3 -j 2
 grep -qF 'a study tells it' out && fail "a study that was made is offered"
