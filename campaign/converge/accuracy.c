@@ -21,9 +21,24 @@ enum {
   LOOKED_AT = 1000
 };
 
+/* How far a result with this mean can move. */
+static double most_of(bool share, double mean) {
+  return share ? fmax(mean, 1 - mean) : HUGE_VAL;
+}
+
+/* Runs of a share that are all equal may miss a rare outcome: what n of them leave. */
+static double left_by_equal(double mean, int64_t n) {
+  return most_of(true, mean) * (1 - pow(0.05, 1 / (double)n));
+}
+
 int64_t accuracy_seeds(double mean, double deviation, double margin, bool share) {
-  const int64_t seeds = (int64_t)(share && deviation > SAMPLE_ROUNDING * fabs(mean)
-                                      ? scatter_runs_of_share(mean, deviation, margin)
+  const bool equal = deviation >= 0 && !(deviation > SAMPLE_ROUNDING * fabs(mean));
+  int64_t seeds;
+  if (share && equal && margin > 0) {
+    const double part = margin / most_of(share, mean), n = part < 1 ? log(0.05) / log1p(-part) : FEWEST_SEEDS;
+    seeds = n > MOST_SEEDS ? 0 : (int64_t)ceil(n);
+  } else
+    seeds = (int64_t)(share && !equal ? scatter_runs_of_share(mean, deviation, margin)
                                       : scatter_runs_needed(deviation, margin));
   if (seeds == 0 || seeds > MOST_SEEDS)
     return 0;
@@ -61,11 +76,6 @@ struct finding {
   size_t own_knobs;
   double own_error, own_resolution, own_middle; /* of all; the error may hold other studies, too */
 };
-
-/* How far a result with this mean can move. */
-static double most_of(bool share, double mean) {
-  return share ? fmax(mean, 1 - mean) : HUGE_VAL;
-}
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
   return engine_knob(campaign->scene->kind, name, NULL);
@@ -241,9 +251,12 @@ static double resolution_of(const struct accuracy_option *option) {
   return option->error + (option->beyond > 0 ? option->beyond : 0);
 }
 
-/* The same against what is allowed, where an accuracy is given. */
+/* The same against what is allowed, where an accuracy is given. An error as large as a share can move tells nothing: it
+ * is smaller where the mean is nearer to 0.5, which is no merit of a setting. */
 static double need_of(const struct accuracy_option *option) {
   const double error = resolution_of(option);
+  if (error >= (1 - 1e-9) * option->most)
+    return HUGE_VAL;
   return isnan(option->within) ? error : option->within > 0 ? error / option->within : HUGE_VAL;
 }
 
@@ -259,8 +272,10 @@ static double total_of(const struct accuracy_option *option, int64_t seeds) {
   if (seeds == 0)
     return NAN;
   const double student = sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
-  const double of_share = option->share ? sample_share_half_width((size_t)seeds, option->mean, option->deviation, 0.95)
-                                        : (double)NAN;
+  double of_share = option->share ? sample_share_half_width((size_t)seeds, option->mean, option->deviation, 0.95)
+                                  : (double)NAN;
+  if (option->share && option->deviation >= 0 && isnan(of_share))
+    of_share = left_by_equal(option->mean, seeds);
   return resolution_of(option) + fmax(student, of_share);
 }
 
@@ -425,8 +440,11 @@ static status take_option(struct finding *finding, const struct convergence_row 
 
 static int by_total(const void *a, const void *b) {
   const struct accuracy_option *x = a, *y = b;
-  const double p = x->seeds ? x->total : HUGE_VAL, q = y->seeds ? y->total : HUGE_VAL;
   const double error_x = need_of(x), error_y = need_of(y);
+  const double p = x->seeds && error_x < HUGE_VAL ? x->total : HUGE_VAL,
+               q = y->seeds && error_y < HUGE_VAL ? y->total : HUGE_VAL;
+  if (p == q && error_x == error_y)
+    return y->own - x->own;
   return p == q ? (error_x > error_y) - (error_x < error_y) : (p > q) - (p < q);
 }
 
@@ -436,7 +454,7 @@ static int by_cost(const void *a, const void *b) {
   if (reach_x != reach_y)
     return reach_x ? -1 : 1;
   const double p = reach_x ? x->cpu_s : need_of(x), q = reach_x ? y->cpu_s : need_of(y);
-  return (p > q) - (p < q);
+  return p == q ? y->own - x->own : (p > q) - (p < q);
 }
 
 static void choose(struct accuracy *accuracy) {
@@ -448,7 +466,7 @@ static void choose(struct accuracy *accuracy) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (option->seeds > 0)
       *(isnan(option->beyond) ? &open : &accuracy->chosen) = i;
-    if (resolution_of(option) <= resolution_of(&accuracy->options[accuracy->reference]))
+    if (need_of(option) <= need_of(&accuracy->options[accuracy->reference]))
       accuracy->reference = i;
   }
   if (in_time && accuracy->chosen == accuracy->count)
@@ -730,6 +748,15 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
   append_study(accuracy, campaign, knob, value, finest->n, next, size);
 }
 
+/* Finer levels of the knob that leaves most of the error. */
+static void advise_widest(const struct accuracy *accuracy, const struct campaign *campaign, int64_t seeds, char *next,
+                          size_t size) {
+  char text[CAMPAIGN_UNIT];
+  text_append(next, size, "Finer levels of %s, which leaves most of it (%.2g%s), may narrow it", accuracy->widest->name,
+              accuracy->widest_resolution, campaign_unit(campaign, campaign->accuracy_quantity, text));
+  append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, seeds, next, size);
+}
+
 /* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
  * leave its middle, and the errors of other studies. */
 static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
@@ -748,8 +775,8 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
           middle, campaign_unit(campaign, campaign->accuracy_quantity, text));
     text_append(next, size, ". No setting that was studied is enough");
     if (middle >= best->within && accuracy->widest) {
-      text_append(next, size, ". Finer levels of %s, which leaves most of it, may narrow it", accuracy->widest->name);
-      append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, best->n, next, size);
+      text_append(next, size, ". ");
+      advise_widest(accuracy, campaign, best->n, next, size);
     }
     return;
   }
@@ -828,7 +855,11 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
   const bool by_resolution = !accuracy->open && best->middle * least >= best->within;
   const bool of_another = finest && strncmp(accuracy->left_out, finest->knob, strlen(finest->knob)) != 0;
-  if (*accuracy->left_out && !by_resolution && !of_another)
+  const bool is_wide = accuracy->widest && accuracy->widest != accuracy->open &&
+                       accuracy->widest_resolution >= best->within; /* finer levels of another knob are not enough */
+  if (is_wide && accuracy->open)
+    advise_widest(accuracy, campaign, best->n, next, sizeof next);
+  else if (*accuracy->left_out && !by_resolution && !of_another)
     text_append(next, sizeof next,
                 "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
                 accuracy->left_out, path, quantity);
@@ -987,12 +1018,12 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
               campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more,
               accuracy->knobs, chosen, option->seeds, cost);
   if (option->deviation >= 0 && !(option->deviation > SAMPLE_ROUNDING * fabs(option->mean)))
-    words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: more of them tell no more",
-                option->n);
+    words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: %s", option->n,
+                option->share ? "the error holds that so many may miss a rare outcome" : "more of them tell no more");
   if (*accuracy->studied)
     words_print(out, before,
-                "this is known of %s; the others have errors and means of their own, which may be wider: `clast "
-                "estimates` tells them after the run",
+                "this is known of %s; the others have errors and means of their own, which may be wider: the table at "
+                "the end of the run tells them",
                 accuracy->studied);
   if (*accuracy->widest_point)
     words_print(out, before, "%s", accuracy->widest_point);

@@ -81,7 +81,7 @@ enum accuracy_print { ACCURACY_SILENT, ACCURACY_NOTE, ACCURACY_TEXT, ACCURACY_JS
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error);
 
-/* Number of seeds whose interval in a table has at most the half width `margin`: Student's, or that of a share unless
- * its runs are equal; at least 3. 0: margin is not above
- * 0, the scatter is not known, or more than 10 000 seeds would be needed, where finer settings are better. */
+/* Number of seeds whose interval in a table has at most the half width `margin`: Student's, or that of a share, where
+ * equal runs may miss a rare outcome; at least 3. 0: margin is not above 0, the scatter is not known, or more than
+ * 10 000 seeds would be needed, where finer settings are better. */
 int64_t accuracy_seeds(double mean, double deviation, double margin, bool share);

@@ -173,7 +173,13 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   }
 }
 
-static void mark_frontier(size_t count, struct study_found *found) {
+/* An error as large as a share can move tells nothing, so that no such level is near. */
+static double near_by(const struct convergence_row *row, const struct sample_range *range) {
+  const double most = fmax(row->mean - range->least, range->most - row->mean);
+  return row->error >= (1 - 1e-9) * most ? (double)NAN : row->error;
+}
+
+static void mark_frontier(const struct sample_range *range, size_t count, struct study_found *found) {
   enum { MOST = LIMITS_STUDY_KNOBS * KNOB_LEVELS };
   double cost[MOST] = {0}, error[MOST] = {0};
   bool on[MOST];
@@ -181,7 +187,7 @@ static void mark_frontier(size_t count, struct study_found *found) {
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++, n++) {
       cost[n] = found[i].rows[l].cpu;
-      error[n] = found[i].rows[l].error;
+      error[n] = near_by(&found[i].rows[l], range);
     }
   convergence_frontier(n, cost, error, on);
   n = 0;
@@ -226,7 +232,8 @@ status study_errors(const struct study *study, size_t from, size_t quantity, str
         row->error = stored.error;
         row->at_least = stored.at_least;
       }
-  mark_frontier(count, found);
+  const struct sample_range range = sample_range(study->quantity[quantity].row);
+  mark_frontier(&range, count, found);
   return answer_end(&levels);
 }
 

@@ -502,7 +502,7 @@ says "(resolution: grains)"
 sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
 says "More seeds are not likely to help: they narrow the interval of this error, and leave about 0.0"
-says "Finer levels of grains, which leaves most of it, may narrow it"
+says "Finer levels of grains, which leaves most of it (0."
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
 says "best: no level is both cheaper and nearer" # the legend tells the columns that are shown
 # Levels whose runs are in doubt are no choice: `plan` says which and why, and with which input finer ones count.

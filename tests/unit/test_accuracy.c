@@ -40,7 +40,11 @@ static void seeds_of_a_share(void **state) {
     sample_of_share(&of, 0.95);
     assert_true(of.half_width <= 0.02 && n > (size_t)accuracy_seeds(mean, 0.1, 0.02, false));
   }
-  assert_int_equal(accuracy_seeds(0.9, 0, 0.02, true), 3);
+  /* Equal runs: so many that an outcome of a share p of all runs, 0.95 of the chance, is among them, and p 0.9 <= 0.02.
+   */
+  const double seeds = (double)accuracy_seeds(0.9, 0, 0.02, true);
+  assert_true(0.9 * (1 - pow(0.05, 1 / seeds)) <= 0.02 && 0.9 * (1 - pow(0.05, 1 / (seeds - 1))) > 0.02);
+  assert_int_equal(accuracy_seeds(0.9, 0, 0.95, true), 3);
 }
 
 static struct campaign *campaign_of(const char *text) {
@@ -230,6 +234,32 @@ static void no_error_is_larger_than_a_share_can_move(void **state) {
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(fabs(accuracy.options[i].error - (strcmp(accuracy.options[i].setting, "2e-6") ? 0.7 : 0.6)) < 1e-12);
+  assert_true(accuracy.options[accuracy.reference].own); /* the smaller bound of the coarser level is no merit */
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+/* The time step shows no limit and leaves little, the grains leave far more than is allowed: finer grains are advised.
+ */
+static void the_knob_that_leaves_most_is_advised(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct store *store = NULL;
+  struct accuracy accuracy;
+  assert_int_equal(store_open_writer(fixture_path(path, "widest"), &store, NULL, 0, &error), STATUS_OK);
+  add_study(store, campaign, "time_step", 3,
+            (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, true, 2e-6},
+                                   {"1e-6", 0.03, 1e-4, 10, true, true, 1e-6},
+                                   {"5e-7", 0.03, 1e-4, 20, false, true, 5e-7}});
+  add_study(store, campaign, "grains", 2,
+            (const struct level[]){{"0.02", 0.3, 1e-4, 5, false, false, 0.02},
+                                   {"0.01069", 0.2, 1e-4, 10, true, false, 0.01069}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_CONTENT);
+  if (!strstr(error.message, "Finer levels of grains, which leaves most of it (0.2)") ||
+      !strstr(error.message, "--knob grains=") || strstr(error.message, "--knob time_step="))
+    fail_msg("%s", error.message);
   accuracy_clear(&accuracy);
   campaign_free(campaign);
 }
@@ -474,6 +504,7 @@ int main(void) {
                                      cmocka_unit_test(finer_than_any_level),
                                      cmocka_unit_test(a_share_is_one_of_the_settings_own_mean),
                                      cmocka_unit_test(no_error_is_larger_than_a_share_can_move),
+                                     cmocka_unit_test(the_knob_that_leaves_most_is_advised),
                                      cmocka_unit_test(levels_that_differ_little_are_enough),
                                      cmocka_unit_test(an_own_level_that_did_not_run),
                                      cmocka_unit_test(what_is_offered_is_accepted),
