@@ -257,16 +257,16 @@ static double share_of_runs(const struct measured *m, size_t first, const struct
 
 static void compare_runs(const struct measured *m, size_t first, const struct pooled_runs *runs,
                          const struct sorted *pool, double *room, size_t *which, struct measured_match *out) {
-  struct sample_moments moments = {0};
+  double sum = 0;
   for (size_t r = 0; r < runs->count; r++) {
     which[r] = r;
     const struct sorted run = sort_runs(runs, 1, &r, out->from, m->weighed, room);
-    sample_add(&moments, (double)run.n);
+    sum += (double)run.n;
     out->judged += run.n >= 2 && run.n < pool->n;
   }
-  out->simulated = sample_summarise_moments(&moments, 0.95);
-  const double times = floor(out->fragments / out->simulated.mean); /* NaN for a sieve table */
-  if (out->simulated.mean > 0 && out->simulated.mean < MATCH_SMALL && times >= 2) {
+  out->simulated = sum / (double)runs->count;
+  const double times = floor(out->fragments / out->simulated); /* NaN for a sieve table */
+  if (out->simulated > 0 && out->simulated < MATCH_SMALL && times >= 2) {
     out->needed = (size_t)fmin(fmax(MATCH_GROUPS * times, MATCH_RUNS), MATCH_MOST);
     if (runs->count >= out->needed)
       out->together = (size_t)times;
@@ -284,7 +284,7 @@ status measured_compare(const struct measured *measured, const struct pooled_run
   complete = fmax(fmax(complete, measured->complete), 0); /* fmax ignores a NaN */
   while (first < measured->n && measured->mass[first] < complete)
     first++;
-  *out = (struct measured_match){complete, 0, sample_summarise(0, NULL, 0.95), NAN, NAN, NAN, 0, MATCH_RUNS, 1};
+  *out = (struct measured_match){complete, 0, NAN, NAN, NAN, NAN, 0, MATCH_RUNS, 1};
   if (first == measured->n || !(measured->above[first] > 0))
     return STATUS_OK;
   if (!measured->single || !(complete > 0))
@@ -656,7 +656,11 @@ static status take_rows(struct reading *r, struct error *error) {
   if (!(above > 0))
     return status_fail(error, STATUS_CONTENT, "%s: there is no fragment in it", r->path);
   if (r->kind == RETAINED && r->out->shares && above > 1.01) /* the classes are rounded */
-    return status_fail(error, STATUS_CONTENT, "%s: %.4g %% of the mass are in its classes", r->path, 100 * above);
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s: %.4g %% of the mass are in its classes; name the column cumulative retained (%%) if '%s' is "
+        "what a sieve and all coarser ones retain, or give masses, as retained (g)",
+        r->path, 100 * above, r->amount_name);
   if (!isfinite(above))
     return status_fail(error, STATUS_CONTENT, "%s: there are more fragments than a number can hold in it", r->path);
   return STATUS_OK;

@@ -362,18 +362,17 @@ double pooled_spectrum_half_width(const struct pooled_form *form, double half_wi
   return dimensions_of(form) * half_width;
 }
 
-/* Sums of a bin that grow while the runs are read. */
 struct sums {
-  double own; /* fragments of the current unit */
   int64_t count;
-  double mass, mean, square; /* mean and square: sums over the units of fragments per run */
+  double mass;
 };
 
-/* The bins from `low` on. */
+/* The bins from `low` on. number[j * runs + r]: fragments of run r in the j-th bin. */
 struct span {
   size_t bins;
   int low;
   struct sums *sums;
+  double *number;
 };
 
 /* Finds the lowest and highest non-empty bin. */
@@ -405,27 +404,44 @@ static void add_run(const struct pooled_runs *runs, size_t r, struct span *span)
       from = spectrum_edge(bin);
       to = spectrum_edge(bin + 1);
     }
-    struct sums *sums = &span->sums[bin - span->low];
-    sums->own++;
-    sums->count++;
-    sums->mass += mass;
+    const size_t j = (size_t)(bin - span->low);
+    span->number[j * runs->count + r]++;
+    span->sums[j].count++;
+    span->sums[j].mass += mass;
   }
 }
 
-/* Adds the fragments per run of a unit with `runs` runs, and clears the unit's counts. */
-static void end_unit(struct span *span, bool cumulative, double runs) {
-  double above = 0;
-  for (size_t j = span->bins; j-- > 0;) {
-    struct sums *sums = &span->sums[j];
-    above = (cumulative ? above : 0) + sums->own;
-    sums->own = 0;
-    sums->mean += above / runs;
-    sums->square += above / runs * (above / runs);
+status pooled_mean(size_t runs, const struct pooled_form *form, const double *number, double *mean, double *half_width,
+                   struct error *error) {
+  const size_t units = form->first_run ? form->units : runs;
+  double sum = 0, squares = 0;
+  for (size_t u = 0; u < units; u++) {
+    const size_t from = form->first_run ? form->first_run[u] : u, to = form->first_run ? form->first_run[u + 1] : u + 1;
+    double own = 0;
+    for (size_t r = from; r < to; r++)
+      own += number[r];
+    own /= (double)(to - from);
+    sum += own;
+    squares += own * own;
   }
+  *mean = sum / (double)units;
+  *half_width = pooled_spectrum_count_hw95(units, sum, squares);
+  return form->seed && units > 1
+             ? sample_crossed_half_width(units, form->first_run, form->seed, number, half_width, error)
+             : STATUS_OK;
 }
 
-static void write_bins(const struct span *span, const struct pooled_form *form, size_t units, struct pooled_bin *bins,
-                       size_t *count) {
+status pooled_number(const struct pooled_runs *runs, const struct pooled_form *form, double from, double *mean,
+                     double *half_width, struct error *error) {
+  OWNED double *number = NULL;
+  TRY(memory_array(&number, runs->count, sizeof *number, "the fragments of a spectrum", error));
+  for (size_t r = 0; r < runs->count; r++)
+    number[r] = (double)(window_end(runs, r, from) - runs->first[r]);
+  return pooled_mean(runs->count, form, number, mean, half_width, error);
+}
+
+static status write_bins(const struct span *span, const struct pooled_form *form, size_t runs, struct pooled_bin *bins,
+                         size_t *count, struct error *error) {
   struct pooled_bin above = {0};
   for (size_t j = 0; form->cumulative && j < span->bins; j++) {
     above.count += span->sums[j].count;
@@ -443,8 +459,9 @@ static void write_bins(const struct span *span, const struct pooled_form *form, 
                                .count = sums->count,
                                .mass = sums->mass};
     const double width = form->cumulative ? 1 : out->upper - out->lower;
-    out->value = sums->mean / (double)units / width;
-    out->half_width = pooled_spectrum_count_hw95(units, sums->mean, sums->square) / width;
+    TRY(pooled_mean(runs, form, span->number + j * runs, &out->value, &out->half_width, error));
+    out->value /= width;
+    out->half_width /= width;
     if (!form->cumulative)
       continue;
     out->count = above.count;
@@ -452,27 +469,27 @@ static void write_bins(const struct span *span, const struct pooled_form *form, 
     above.count -= sums->count;
     above.mass -= sums->mass;
   }
+  return STATUS_OK;
 }
 
 status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form *form, struct pooled_bin **bins,
                        size_t *count, struct error *error) {
-  const size_t units = form->first_run ? form->units : runs->count;
   struct span span = {0};
   OWNED struct sums *sums = NULL;
+  OWNED double *number = NULL;
   *count = 0;
   *bins = NULL;
   find_span(runs, &span);
   TRY(memory_array(&sums, span.bins, sizeof *sums, "the bins of a spectrum", error));
   TRY(memory_array(bins, span.bins, sizeof **bins, "the bins of a spectrum", error));
+  TRY(memory_array(&number, span.bins * runs->count, sizeof *number, "the bins of a spectrum", error));
   span.sums = sums;
-  for (size_t u = 0; u < units; u++) {
-    const size_t from = form->first_run ? form->first_run[u] : u, to = form->first_run ? form->first_run[u + 1] : u + 1;
-    for (size_t r = from; r < to; r++)
-      add_run(runs, r, &span);
-    end_unit(&span, form->cumulative, (double)(to - from));
-  }
-  write_bins(&span, form, units, *bins, count);
-  return STATUS_OK;
+  span.number = number;
+  for (size_t r = 0; r < runs->count; r++)
+    add_run(runs, r, &span);
+  for (size_t i = span.bins ? (span.bins - 1) * runs->count : 0; form->cumulative && i-- > 0;)
+    number[i] += number[i + runs->count];
+  return write_bins(&span, form, runs->count, *bins, count, error);
 }
 
 /* ---- Does a power law fit at all? ----

@@ -166,6 +166,25 @@ bool sample_crossed(size_t points, const size_t *first, const struct sample_of_s
   return true;
 }
 
+status sample_crossed_half_width(size_t points, const size_t *first, const uint64_t *seed, const double *values,
+                                 double *half_width, struct error *error) {
+  static const char what[] = "the interval of a mean over points";
+  OWNED struct sample_of_seed *of_seeds = NULL;
+  struct sample_crossed crossed;
+  double largest = 0;
+  TRY(memory_array(&of_seeds, first[points], sizeof *of_seeds, what, error));
+  for (size_t i = 0; i < first[points]; i++) {
+    of_seeds[i] = (struct sample_of_seed){(int64_t)seed[i], values[i]};
+    largest = fmax(largest, fabs(values[i]));
+  }
+  if (!sample_crossed(points, first, of_seeds, &crossed))
+    return status_fail(error, STATUS_MEMORY, "no memory for %s", what);
+  const bool differ = crossed.deviation > SAMPLE_ROUNDING * largest;
+  *half_width = differ ? sample_student_of(crossed.units - 1, 0.95) * crossed.deviation / sqrt(crossed.units)
+                       : (double)NAN;
+  return STATUS_OK;
+}
+
 double sample_deviation_factor(double freedom) {
   return sqrt(freedom / gsl_cdf_chisq_Pinv(0.05, freedom));
 }

@@ -118,6 +118,9 @@ struct sample_of_seed {
  * memory. */
 bool sample_crossed(size_t points, const size_t *first, const struct sample_of_seed *values,
                     struct sample_crossed *out);
+/* The half width of the 95 % interval of that mean. NaN: one point, or they are equal. */
+status sample_crossed_half_width(size_t points, const size_t *first, const uint64_t *seed, const double *values,
+                                 double *half_width, struct error *error);
 
 /* Interval of a statistic of many runs, such as an exponent, by the jackknife over runs: leave out one run after
  * another and measure how far the statistic moves; then use Student's t, whose degrees of freedom are the number of
@@ -397,6 +400,7 @@ struct pooled_form {
    * point. Each has the same weight. NULL: every run is a unit. */
   size_t units;
   const size_t *first_run;
+  const uint64_t *seed; /* of every run: the interval is that of sample_crossed(). NULL: no units share seeds */
 };
 /* A non-empty bin. Of a cumulative spectrum: any bin; it counts the fragments above its lower end. */
 struct pooled_bin {
@@ -417,6 +421,13 @@ double pooled_spectrum_count_hw95(size_t runs, double count, double squares);
  * from the first to the last non-empty one. */
 status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form *form, struct pooled_bin **bins,
                        size_t *count, struct error *error);
+
+/* The mean over the units of a form, and its 95 % interval, of a number of each run; and of its number of fragments of
+ * at least a mass, which N(>m) has. */
+status pooled_mean(size_t runs, const struct pooled_form *form, const double *number, double *mean, double *half_width,
+                   struct error *error);
+status pooled_number(const struct pooled_runs *runs, const struct pooled_form *form, double from, double *mean,
+                     double *half_width, struct error *error);
 
 /* The exponent of a power law has four names: F(m) ~ m^-beta, N(>m) ~ m^-(beta - 1), and by size in d dimensions F(L) ~
  * L^-(d (beta - 1) + 1), N(>L) ~ L^-(d (beta - 1)). These functions convert its value and its half width to a form. */
@@ -582,9 +593,9 @@ enum { MATCH_RUNS = 20, MATCH_GROUPS = 4, MATCH_SMALL = 20, MATCH_MOST = 1000000
 struct measured_match {
   double from;      /* kg: lower limit of the fragments used; with thresholds, the first threshold from `complete` on */
   double fragments; /* number of measured fragments; NaN for a sieve table */
-  struct sample_summary simulated; /* fragments per run */
-  double distance; /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than
-                      two measured fragments or classes, which have no shape */
+  double simulated; /* fragments per run: mean over the runs */
+  double distance;  /* Kolmogorov's: greatest difference between both shares of fragments above a mass. NaN: fewer than
+                       two measured fragments or classes, which have no shape */
   /* Of runs that are at least as far from the pool of the other runs: one experiment is one specimen, so a share below
    * 0.05 is evidence against the pool. The distance of a run with fewer than MATCH_SMALL fragments is mostly chance. If
    * two or more such runs have no more fragments together than were measured, the share is that of draws of so many

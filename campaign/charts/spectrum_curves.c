@@ -27,7 +27,7 @@ struct curve {
   double mass;          /* kg, all fragments of all runs */
   size_t runs;
   struct picture_fit fit;      /* owns its runs */
-  const char *untold;          /* why there is no fit; NULL: there is one, or the pool has several points */
+  const char *untold;          /* why there is no fit; NULL: there is one */
   struct pooled_rivals rivals; /* n 0: not requested */
   struct picture_thin *thin;   /* one for each run; owned with their bins */
   size_t thin_count;
@@ -62,6 +62,7 @@ static status make_runs(const struct pooled_runs *runs, struct picture_fit *fit,
 static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct curve *curve, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent headline;
+  curve->untold = pool->points > 1 ? "each of its points has a law of its own" : "no estimates are stored";
   if (pool->points != 1 || !(lower > 0))
     return STATUS_OK;
   TRY(pooled_exponent(&pool->data.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &headline,
@@ -91,6 +92,7 @@ static status make_thin(const struct ask_pool *pool, struct curve *curve, struct
   const struct pooled_runs *runs = &pool->data.runs;
   struct pooled_form form = curve->form;
   form.first_run = NULL;
+  form.seed = NULL;
   TRY(memory_array(&curve->thin, runs->count, sizeof *curve->thin, "the spectra of the runs", error));
   for (size_t r = 0; r < runs->count; r++) {
     struct pooled_bin *bins;
@@ -120,7 +122,8 @@ static status make_curve(const struct spectrum_choice *choice, bool with_rivals,
   TRY(fit_curve(pool, with_rivals, curve, error));
   if (choice->runs)
     TRY(make_thin(pool, curve, error));
-  curve->form.first_run = NULL; /* belongs to the pool, which is released */
+  curve->form.first_run = NULL; /* both belong to the pool, which is released */
+  curve->form.seed = NULL;
   return STATUS_OK;
 }
 
@@ -182,25 +185,35 @@ static status write_caption(struct store *store, const struct curves *curves, ch
   const struct spectrum_choice *choice = curves->choice;
   struct ask_resolution resolution;
   struct ask_group_pooled pooled;
-  char text[UNCERTAINTY_TEXT] = "resolution: not known", intervals[600];
-  if (ask_resolution(store, curves->point, "beta", &resolution, NULL) == STATUS_OK)
-    uncertainty_resolution(&resolution, text);
+  char text[UNCERTAINTY_TEXT] = "resolution: not known", intervals[600], untold[CAPTION / 2] = "";
+  bool lines = false;
+  for (size_t i = 0; i < curves->count; i++) {
+    const struct curve *curve = &curves->curve[i];
+    lines |= !curve->untold;
+    if (!curve->untold)
+      continue;
+    text_append(untold, sizeof untold, "%s %s", *untold ? ";" : ". No line:", curve->label);
+    if (i + 1 == curves->count || curve->untold != curve[1].untold) /* one reason after all that have it */
+      text_append(untold, sizeof untold, " (%s%s)", curve->form.units > 1 ? "" : "\xce\xb2 not known: ", curve->untold);
+  }
   TRY(ask_group_pooled(store, choice->pool.by, &pooled, error));
   charts_intervals(&pooled, intervals, sizeof intervals);
-  snprintf(caption, CAPTION, "%s. %s: %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles or grains)",
-           laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Error bars", intervals, text);
-  char untold[400] = "";
-  for (size_t i = 0; i < curves->count; i++)
-    pooled_exponent_tell(curves->curve[i].untold, untold, sizeof untold);
-  bool lines = false;
-  for (size_t i = 0; i < curves->count; i++)
-    lines |= isfinite(curves->curve[i].fit.beta);
+  *caption = '\0';
+  if (lines) {
+    if (ask_resolution(store, curves->point, "beta", &resolution, NULL) == STATUS_OK)
+      uncertainty_resolution(&resolution, text);
+    snprintf(caption, CAPTION, "%s; of \xce\xb2, %s. ", laws[choice->density > 0][choice->cumulative], text);
+  }
+  text_append(caption, CAPTION, "%s: %s. Grey: fragments are missing (too few particles or grains)",
+              choice->cumulative ? "Bands" : "Error bars", intervals);
+  if (choice->runs)
+    text_append(caption, CAPTION, ". Thin lines: single runs");
   if (lines)
     text_append(caption, CAPTION,
                 choice->cumulative
                     ? ". Lines: the law below the largest fragment of each run, and this fragment itself"
                     : ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
-  text_append(caption, CAPTION, "%s%s", *untold ? ". No line: " : "", untold);
+  text_append(caption, CAPTION, "%s", untold);
   charts_doubts(store, &curves->doubts, caption, CAPTION);
   return STATUS_OK;
 }
@@ -267,7 +280,8 @@ static void print_plots(const struct curves *curves, bool ascii) {
   for (size_t i = 0; i < curves->count; i++) {
     const struct curve *curve = &curves->curve[i];
     const struct picture_series series = series_of(curve);
-    const char *per_mass = curve->form.size.dimensions == 2 ? "F(m) [m/kg]" : "F(m) [1/kg]";
+    char per_mass[32];
+    snprintf(per_mass, sizeof per_mass, "F(m) [%s]", ask_pool_per_mass_unit(curve->form.size.dimensions));
     printf("%s%s\n", i ? "\n" : "", curve->label);
     text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "L" : "m",
                        sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),

@@ -128,7 +128,7 @@ status print_ejecta(struct store *store, const struct ask_pool_choice *choice, c
   if (table && table_for_people(format))
     fputs(
         "clast: mass and momentum (along the outward normal) of the target's matter that leaves at a speed or faster; "
-        "±: 95 % intervals over runs, of pooled points over points\n",
+        "±: 95 % intervals over runs, of pooled points over points and seeds\n",
         stderr);
   if (curves->without)
     fprintf(stderr, "clast: %zu runs are left out: an older clast stored no speeds of their ejecta\n", curves->without);

@@ -268,7 +268,7 @@ static status print_bins(struct table *table, const struct spectrum_choice *choi
   size_t count;
   double mass = 0;
   if (run_id)
-    form.first_run = NULL;
+    form = (struct pooled_form){.cumulative = form.cumulative, .size = form.size};
   TRY(pooled_spectrum(runs, &form, &bins, &count, error));
   for (size_t b = 0; b < count; b++)
     mass = form.cumulative ? fmax(mass, bins[b].mass) : mass + bins[b].mass;
@@ -297,7 +297,7 @@ status print_spectrum(struct store *store, const struct spectrum_choice *choice,
   const bool sizes = choice->density > 0, people = table_for_people(format);
   char kg[64]; /* none with runs of the plane and of space */
   TRY(ask_columns_unit(store, OUTCOME_NAME(mean_fragment_mass), kg, sizeof kg, error));
-  const char *unit = sizes ? "m" : kg, *per_kg = !*kg ? NULL : strcmp(kg, "kg/m") == 0 ? "m/kg" : "1/kg";
+  const char *unit = sizes ? "m" : kg, *per_kg = !*kg ? NULL : ask_pool_per_mass_unit(strcmp(kg, "kg/m") == 0 ? 2 : 3);
   const char *per_unit = choice->cumulative ? NULL : sizes ? "1/m" : per_kg;
   struct ask_pool_choice pool_choice = choice->pool;
   pool_choice.inputs = people;
@@ -406,8 +406,9 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   TABLE table = table_new(format, stdout);
   print_pool_columns(table, &pools);
   table_column(table, "from", kg);
-  table_columns(table, (const char *const[]){"measured", "runs", "fragments_mean", "fragments_hw95", "distance",
-                                             "runs_as_far", "log_likelihood", NULL});
+  table_columns(table, (const char *const[]){"measured", "runs", "fragments_mean", "fragments_hw95", NULL});
+  table_range(table, (struct sample_range){.least = 0, .most = HUGE_VAL});
+  table_columns(table, (const char *const[]){"distance", "runs_as_far", "log_likelihood", NULL});
   table_doubt_columns(table);
   struct ask_doubts sum = {0};
   size_t count = 0, agree = 0, differ = 0;
@@ -415,11 +416,15 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   bool nothing = false;                           /* a spectrum has no fragment above the mass where all are complete */
   bool empty = false, lone = false, told = false; /* which one; and a row has a distance */
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
+    const struct pooled_form form = ask_pool_form(pool, true, 0);
     struct measured_match match;
+    double fragments = NAN, half_width = NAN;
     TRY(measured_compare(choice->measured, &pool->data.runs, complete, &match, error));
+    if (!isnan(match.simulated)) /* the measured spectrum has fragments from there on */
+      TRY(pooled_number(&pool->data.runs, &form, match.from, &fragments, &half_width, error));
     nothing |= !isfinite(match.distance);
-    empty |= match.simulated.mean == 0; /* NaN: the measured spectrum has none */
-    lone |= !isfinite(match.distance) && !(match.simulated.mean == 0);
+    empty |= match.simulated == 0; /* NaN: the measured spectrum has none */
+    lone |= !isfinite(match.distance) && !(match.simulated == 0);
     told |= isfinite(match.distance);
     if (isfinite(match.distance) && isnan(match.share) && (!few.needed || match.judged < few.judged))
       few = match;
@@ -442,7 +447,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     table_reals(table, 2, (const double[]){match.from, match.fragments});
     table_integer(table, (int64_t)pool->data.runs.count);
     table_rests_on(table, &pool->doubts);
-    table_reals(table, 2, (const double[]){match.simulated.mean, match.simulated.half_width});
+    table_reals(table, 2, (const double[]){fragments, half_width});
     table_rests_on(table, &pool->doubts);
     table_real(table, match.distance);
     table_rests_on(table, &pool->doubts);

@@ -249,7 +249,7 @@ static status add_cell(struct run_cells *cells, const struct ask_pools *pools, c
   }
   for (size_t r = 0; r < pool->data.runs.count; r++)
     if (isfinite(pool->value[r]))
-      cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
+      cell->run[cell->runs++] = (struct run_cells_run){(int64_t)pool->data.seed[r], pool->value[r]};
   if (cell->runs == 0) { /* a point whose runs lack the result is none */
     release_cell(cells, --cells->count);
     return STATUS_OK;

@@ -364,18 +364,20 @@ void ask_columns_show(const struct ask_column *column, const struct query_value 
   text_powers(text, size);
 }
 
-/* Rows of results are for all engines; of one in the plane, masses are per metre of thickness. With runs of both kinds
- * the column has no unit. */
+/* Rows of results are for all engines; of one in the plane, masses are per metre of thickness, and densities over them
+ * are, too. With runs of both kinds the column has no unit. */
 static status per_metre(struct store *store, char *unit, size_t size, struct error *error) {
   bool plane = false, other = false;
-  if (strcmp(unit, "kg") != 0)
+  const bool inverse = strcmp(unit, "1/kg") == 0;
+  if (!inverse && strcmp(unit, "kg") != 0)
     return STATUS_OK;
   ANSWER answer = answer_to(store, error, "SELECT DISTINCT engine FROM point");
   while (answer_next(&answer)) {
     const struct engine_kind *kind = engine_find(answer_text(&answer, 0), NULL);
     *(kind && kind->dimensions == 2 ? &plane : &other) = true;
   }
-  snprintf(unit, size, "%s", plane && other ? "" : ask_pool_mass_unit(plane ? 2 : 3));
+  const char *one = inverse ? ask_pool_per_mass_unit(plane ? 2 : 3) : ask_pool_mass_unit(plane ? 2 : 3);
+  snprintf(unit, size, "%s", plane && other ? "" : one);
   return answer_end(&answer);
 }
 

@@ -421,7 +421,7 @@ struct ask_group_pooled {
 };
 struct answer ask_group(struct store *store, const char *by, const char *quantities, struct ask_group_pooled *pooled,
                         struct error *error);
-/* The same of ask_pools(), whose intervals of counts lack the shared seeds. by NULL: every point is alone. */
+/* The same of ask_pools(). by NULL: every point is alone. */
 status ask_group_pooled(struct store *store, const char *by, struct ask_group_pooled *pooled, struct error *error);
 
 /* The varied inputs that are none of `by` and change from group to group, though in no group ("": none): the rows of
@@ -589,7 +589,6 @@ struct ask_pool {
    * where they are largest; point_id is 0 if there are several. With a quantity: only the run ids, no fragments. */
   struct point_data data;
   double *value;            /* with a quantity: of each run, NaN: off or withheld; else NULL */
-  int64_t *seed;            /* with a quantity: of each run */
   struct ask_doubts doubts; /* of the quantity, or of the masses */
 };
 /* Pools under way. A variable of type ASK_POOLS frees itself where its block is left. */
@@ -623,7 +622,8 @@ status ask_pools_end(struct ask_pools *pools);
 /* Dimensions of the engine of the chosen runs, 2, 3, or 0 (not known): masses of 2 are kg per metre. STATUS_USAGE: some
  * are in the plane, and others not. */
 status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
-const char *ask_pool_mass_unit(int dimensions); /* "kg/m", "kg" */
+const char *ask_pool_mass_unit(int dimensions);     /* "kg/m", "kg" */
+const char *ask_pool_per_mass_unit(int dimensions); /* "m/kg", "1/kg" */
 /* The row's unit, masses as above. NULL: none. */
 const char *ask_result_unit(const struct field *row, int dimensions);
 
@@ -644,8 +644,10 @@ struct ask_ejecta {
   struct ask_ejecta_row {
     double speed, upper; /* m/s: of the bin */
     /* Of all target matter that leaves at `speed` or faster: kg, kg m/s. Means over the runs of a point, or over the
-     * points. */
-    struct sample_summary mass, momentum;
+     * points, with their 95 % intervals. */
+    struct ask_ejecta_mean {
+      double mean, half_width;
+    } mass, momentum;
   } row[EJECTA_BINS]; /* by ascending speed */
 };
 /* From the slowest bin to the fastest one in which a run has ejecta. Runs whose value is off or withheld are left out.

@@ -2,6 +2,7 @@
 #include "db/ask/ask.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
@@ -38,41 +39,45 @@ struct ask_pools ask_ejecta_pools(struct store *store, const struct ask_pool_cho
   return ask_pools(store, choice, name, error);
 }
 
-/* Sums of a unit of the mean, which is a run or a point, and the moments of the units. */
-struct ejecta_sums {
-  struct ejecta unit;
-  size_t runs;
-  int first, last; /* bins that hold something */
-  struct sample_moments mass[EJECTA_BINS], momentum[EJECTA_BINS];
+/* Of all runs with ejecta, point after point: what leaves at the speed of a bin or faster. */
+struct ejecta_runs {
+  size_t room, points;
+  size_t *first; /* of each point */
+  uint64_t *seed;
+  double *mass, *momentum; /* [bin * room + run] */
 };
 
-static void end_unit(struct ejecta_sums *sums) {
-  for (int i = 0; sums->runs > 0 && i < EJECTA_BINS; i++) {
-    sample_add(&sums->mass[i], sums->unit.bin[i].mass / (double)sums->runs);
-    sample_add(&sums->momentum[i], sums->unit.bin[i].momentum / (double)sums->runs);
-  }
-  sums->unit = (struct ejecta){.bin = {{0, 0}}};
-  sums->runs = 0;
+#define EJECTA_RUNS __attribute__((cleanup(release))) struct ejecta_runs
+static void release(struct ejecta_runs *runs) {
+  free(runs->first);
+  free(runs->seed);
+  free(runs->mass);
+  free(runs->momentum);
 }
 
-static void add_run(struct ejecta_sums *sums, struct ejecta *run) {
-  for (int i = 0; i < EJECTA_BINS; i++)
-    if (run->bin[i].mass > 0) {
-      sums->first = i < sums->first ? i : sums->first;
-      sums->last = i > sums->last ? i : sums->last;
-    }
-  ejecta_sum(run);
-  for (int i = 0; i < EJECTA_BINS; i++) {
-    sums->unit.bin[i].mass += run->bin[i].mass;
-    sums->unit.bin[i].momentum += run->bin[i].momentum;
-  }
-  sums->runs++;
+static status make(const struct ask_pool *pool, struct ejecta_runs *runs, struct error *error) {
+  static const char what[] = "the ejecta of runs";
+  runs->room = pool->data.runs.count;
+  TRY(memory_array(&runs->first, pool->points + 1, sizeof *runs->first, what, error));
+  TRY(memory_array(&runs->seed, runs->room, sizeof *runs->seed, what, error));
+  TRY(memory_array(&runs->mass, runs->room * EJECTA_BINS, sizeof *runs->mass, what, error));
+  return memory_array(&runs->momentum, runs->room * EJECTA_BINS, sizeof *runs->momentum, what, error);
+}
+
+static status tell(const struct ejecta_runs *runs, const double *value, struct ask_ejecta_mean *out,
+                   struct error *error) {
+  const struct pooled_form form = {.units = runs->points, .first_run = runs->first, .seed = runs->seed};
+  if (runs->points > 1)
+    return pooled_mean(runs->first[runs->points], &form, value, &out->mean, &out->half_width, error);
+  const struct sample_summary summary = sample_summarise(runs->first[1], value, 0.95);
+  *out = (struct ask_ejecta_mean){summary.mean, summary.half_width};
+  return STATUS_OK;
 }
 
 status ask_ejecta(struct store *store, const struct ask_pool *pool, struct ask_ejecta *out, struct error *error) {
-  OWNED struct ejecta_sums *sums = memory_small(1, sizeof *sums);
-  sums->first = EJECTA_BINS;
-  sums->last = -1;
+  EJECTA_RUNS runs = {0};
+  int first = EJECTA_BINS, last = -1; /* bins that hold something */
+  TRY(make(pool, &runs, error));
   *out = (struct ask_ejecta){0};
   for (size_t p = 0; p < pool->points; p++) {
     for (size_t r = pool->first_run[p]; r < pool->first_run[p + 1]; r++) {
@@ -85,16 +90,26 @@ status ask_ejecta(struct store *store, const struct ask_pool *pool, struct ask_e
         out->without++;
         continue;
       }
-      out->runs++;
-      add_run(sums, &run);
-      if (pool->points == 1)
-        end_unit(sums);
+      for (int i = 0; i < EJECTA_BINS; i++)
+        if (run.bin[i].mass > 0) {
+          first = i < first ? i : first;
+          last = i > last ? i : last;
+        }
+      ejecta_sum(&run);
+      for (size_t i = 0; i < EJECTA_BINS; i++) {
+        runs.mass[i * runs.room + out->runs] = run.bin[i].mass;
+        runs.momentum[i * runs.room + out->runs] = run.bin[i].momentum;
+      }
+      runs.seed[out->runs++] = pool->data.seed[r];
     }
-    end_unit(sums);
+    if (out->runs > runs.first[runs.points])
+      runs.first[++runs.points] = out->runs;
   }
-  for (int i = sums->first; i <= sums->last; i++)
-    out->row[out->count++] = (struct ask_ejecta_row){bins_edge(EJECTA_FIRST + i), bins_edge(EJECTA_FIRST + i + 1),
-                                                     sample_summarise_moments(&sums->mass[i], 0.95),
-                                                     sample_summarise_moments(&sums->momentum[i], 0.95)};
+  for (int i = first; i <= last; i++) {
+    struct ask_ejecta_row *row = &out->row[out->count++];
+    *row = (struct ask_ejecta_row){.speed = bins_edge(EJECTA_FIRST + i), .upper = bins_edge(EJECTA_FIRST + i + 1)};
+    TRY(tell(&runs, runs.mass + (size_t)i * runs.room, &row->mass, error));
+    TRY(tell(&runs, runs.momentum + (size_t)i * runs.room, &row->momentum, error));
+  }
   return STATUS_OK;
 }

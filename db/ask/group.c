@@ -345,7 +345,7 @@ static status take_first_names(struct answer *answer, char list[ASK_GROUP_POOLED
 
 /* What differs within a group: `scene`, and the varied inputs or, when the points of a group differ in none of them,
  * all others. The first NAMED are named. means: the quantities of means over points (sample_crossed()), which lack the
- * seeds of points of one value alone; NULL: of anything else. */
+ * seeds of points of one value alone; NULL: of numbers that every run has. */
 static status find_pooled(struct store *store, const struct names *axes, const struct names *means,
                           struct ask_group_pooled *pooled, struct error *error) {
   OWNED char *grouped = grouped_sql(axes);
@@ -367,7 +367,7 @@ static status find_pooled(struct store *store, const struct names *axes, const s
   for (size_t i = 0; means && i < means->count; i++)
     sqlite3_str_appendf(lone, "%scount(\"%w\") = 1", i ? " OR " : "", means->name[i]);
   if (!means)
-    sqlite3_str_appendall(lone, "1");
+    sqlite3_str_appendall(lone, "count(*) = 1");
   char *is_lone = sqlite3_str_finish(lone);
   ANSWER kinds = answer_to(store, error,
                            "%s SELECT total(points = 1), total(shared) FROM (SELECT count(*) AS points, count(seed) > "

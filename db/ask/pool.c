@@ -89,9 +89,9 @@ static status add_values(struct ask_pools *pools, int64_t point, struct error *e
   for (; answer_next(&answer); have++) {
     TRY(grow_or_fail(&pool->data.run_id, &room[0], have + 1, sizeof *pool->data.run_id, the_pools, error));
     TRY(grow_or_fail(&pool->value, &room[1], have + 1, sizeof *pool->value, the_pools, error));
-    TRY(grow_or_fail(&pool->seed, &room[2], have + 1, sizeof *pool->seed, the_pools, error));
+    TRY(grow_or_fail(&pool->data.seed, &room[2], have + 1, sizeof *pool->data.seed, the_pools, error));
     pool->data.run_id[have] = answer_integer(&answer, 0);
-    pool->seed[have] = answer_integer(&answer, 1);
+    pool->data.seed[have] = (uint64_t)answer_integer(&answer, 1);
     pool->value[have] = answer_real(&answer, 2);
   }
   pool->data.runs.count = have;
@@ -103,7 +103,6 @@ static void release(struct ask_pool *pool) {
   free(pool->point);
   free(pool->first_run);
   free(pool->value);
-  free(pool->seed);
   *pool = (struct ask_pool){0};
 }
 
@@ -236,9 +235,14 @@ const char *ask_result_unit(const struct field *row, int dimensions) {
   return row->unit && strcmp(row->unit, "kg") == 0 ? ask_pool_mass_unit(dimensions) : row->unit;
 }
 
+const char *ask_pool_per_mass_unit(int dimensions) {
+  return dimensions == 2 ? "m/kg" : "1/kg";
+}
+
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density) {
   return (struct pooled_form){.cumulative = cumulative,
                               .size = {density, pool->data.dimensions},
                               .units = pool->points,
-                              .first_run = pool->points > 1 ? pool->first_run : NULL};
+                              .first_run = pool->points > 1 ? pool->first_run : NULL,
+                              .seed = pool->points > 1 ? pool->data.seed : NULL};
 }

@@ -40,7 +40,10 @@ expect 0 "$clast" spectrum shots.db --ejecta --by impact.speed --csv
 expect 0 "$clast" spectrum shots.db --ejecta --point 2 --plot --ascii
 prints "mass > v"; prints "v [m/s]"
 ! grep -q "count" out || fail "masses over speeds have no count"
-expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg --by '' # its points share seeds
+expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg --by '' # its points share seeds, which the interval has
+grep -q "without what a seed changes" ejecta.svg && fail "the interval lacks seeds that it has"
+says "over points and seeds"; ! grep -q "points share seeds" err || fail "the interval lacks seeds that it has"
+expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg --by '' --where 'replicate = 0' # one seed of a point tells nothing
 grep -q "speed v (m/s)" ejecta.svg || fail "no axis of speeds"
 grep -q "without what a seed changes" ejecta.svg || fail "no word of shared seeds in the caption"
 says "points share seeds: "

@@ -14,6 +14,7 @@ LC_ALL=C grep -q '[^ -~]' out && fail "not ASCII only"
 ok "--ascii is ASCII"
 
 is_png() { [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"; ok "$1 is a PNG"; }
+caption() { grep '^caption_text' "$1" | sed "s/'\\.\"\\\\n\"\\.'/ /g"; } # in one line
 is_svg() { head -c 200 "$1" | grep -q '<svg\|<?xml' && tail -c 20 "$1" | grep -q '</svg>' || fail "$1 is no whole SVG"; ok "$1 is an SVG"; }
 
 expect 0 "$clast" spectrum small.db --picture spectrum.png
@@ -35,6 +36,11 @@ PY
 ok "a condition and an input choose the same runs for table and picture"
 expect 0 "$clast" spectrum "${choice[@]}" --plot --ascii
 same "$(awk '$1 + 0 > 0 && $2 + 0 > 0 {n += $2} END {print n}' out)" "$(cat number)" "fragments of the text plot"
+# Pooled points: why there is no line, and nothing of the exponent that is not drawn.
+caption chosen.gp >caption
+grep -q "No line: .*2 points, 4 runs.* (each of its points has a law of its own)" caption || fail "no word why pooled points have no line"
+grep -q "resolution:" caption && fail "resolution of an exponent that is not drawn"
+ok "pooled points have no law, and the caption says so"
 expect 64 "$clast" spectrum small.db --by nothing
 expect 64 "$clast" spectrum small.db --where "replicate > 99" --plot
 says "small.db: none of the runs meets --where \"replicate > 99\""
@@ -49,6 +55,26 @@ assert len(rows) == 4 and all(float(r["from"]) >= 0.3 and 0 <= float(r["distance
 assert len({r["from"] for r in rows}) == 1 # likelihoods are comparable
 PY
 ok "distances from a measured spectrum"
+# One number of fragments with one interval, over points and the seeds that they share: beside a measured spectrum, as N(>m),
+# and in the statistics.
+printf '%s\n' '# complete from: 1 kg/m' 'mass (kg/m)' 1 2 5 >whole.csv
+expect 0 "$clast" spectrum small.db --by strain --with whole.csv --csv
+cp out with.csv
+expect 0 "$clast" spectrum small.db --by strain --cumulative --csv
+cp out above.csv
+expect 0 "$clast" stats small.db --by strain -Q fragment_count --csv
+python - <<'PY'
+import csv
+near = lambda a, b: abs(float(a) - float(b)) < 1e-9 * float(b)
+beside, above, stats = [list(csv.DictReader(open(f))) for f in ("with.csv", "above.csv", "out")]
+assert len(beside) == len(stats) == 2, beside
+for b, s in zip(beside, stats):
+    n = [r for r in above if r["threshold_strain"] == b["threshold_strain"] == s["threshold_strain"]]
+    from_1 = [r for r in n if near(r["lower"], 1)][0]
+    assert near(b["fragments_mean"], from_1["number"]) and near(b["fragments_hw95"], from_1["number_hw95"]), (b, from_1)
+    assert near(n[0]["number"], s["fragment_count_mean"]) and near(n[0]["number_hw95"], s["fragment_count_hw95"]), (n[0], s)
+PY
+ok "one interval of the number of fragments"
 expect 0 "$clast" spectrum small.db --point 1 --with measured.csv # the first line answers
 head -2 out | tr '\n' ' ' | grep -Eq '^no verdict on the shape: it needs 20 runs .* has [0-3] ' || fail "no word on 3 runs"
 tr '\n' ' ' <out | grep -q 'from the lightest mass on, and has' || fail "runs from which mass on"
@@ -82,7 +108,9 @@ prints "number of fragments: 100 % of the runs"
 expect 0 "$clast" spectrum small.db --with measured.csv --cumulative --size "5000 kg/m^3" --runs --picture beside.svg
 is_svg beside.svg
 grep -q 'measured: &lt;made up>' beside.svg || fail "the source of the measured spectrum is not in the picture"
-grep -q 'N(>L), fragments' beside.svg && grep -q 'intervals over seeds; of' beside.svg && grep -q 'not studied' beside.svg || fail "the picture does not tell its axes and errors"
+grep -q 'N(>L), fragments' beside.svg && grep -q 'intervals over seeds' beside.svg || fail "the picture does not tell its axes and errors"
+expect 0 "$clast" spectrum many.db --point 4 --cumulative --picture line.svg # it has a line
+grep -q 'of β, resolution: not studied' line.svg && ! grep -q 'No line' line.svg || fail "the picture does not tell the errors of its line"
 ok "what was measured is drawn, and the errors are told"
 printf '%s\n' 'mass (kg);passing (%)' '0,1;12,5' '0,4;21,5' '1,5;40' '2,5;60' '6;100' >sieves.csv
 expect 0 "$clast" spectrum small.db --with sieves.csv --csv
@@ -108,7 +136,8 @@ ok "marks of a sieve table do not move with the point"
 grep -q "has no upper end" sieves.gp && fail "a sieve table without a mass above its last sieve has an open class"
 sed 's/6;100/6;90/' sieves.csv >open.csv
 expect 0 "$clast" spectrum small.db --point 1 --with open.csv --picture open.svg --keep-script
-grep -q "class from 6 kg/m on has no upper end and is drawn only in N(>m)" open.gp || fail "an open class is left out without a word"
+caption open.gp >caption
+grep -q "class from 6 kg/m on has no upper end and is drawn only in N(>m)" caption || fail "an open class is left out without a word"
 expect 0 "$clast" spectrum small.db --point 1 --with open.csv --cumulative --picture open.svg --keep-script
 grep -q "has no upper end" open.gp && fail "N(>m) has the open class"
 ok "shares of mass from a sieve table, and their curve"
@@ -122,6 +151,17 @@ ok "every run by itself"
 expect 64 "$clast" spectrum small.db --size "5 m"
 expect 65 "$clast" spectrum small.db --with small.yaml
 expect 66 "$clast" spectrum small.db --with none.csv
+
+printf '%s\n' '# density: 2.7 g/cm^3' 'size (mm), retained (%)' '31.5, 40' '16, 50' '8, 30' >twice.csv
+expect 65 "$clast" spectrum small.db --with twice.csv
+says "120 % of the mass are in its classes; name the column cumulative retained (%) if 'retained' is"
+# Thin lines are explained, and a missing line names its spectrum.
+expect 0 "$clast" run small.yaml --store few.db --set stop.end_time='10 us' --quiet
+expect 0 "$clast" spectrum few.db --point 1 --with whole.csv --runs --picture few.svg --keep-script
+caption few.gp >caption
+grep -q "Thin lines: single runs" caption || fail "thin lines without a word"
+grep -q "No line: .*3 runs.* (β not known: fewer than 5 fragments)" caption || fail "of which spectrum is there no line?"
+ok "thin and missing lines"
 
 expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
@@ -446,4 +486,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 161
+done_after 171

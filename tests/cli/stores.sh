@@ -148,6 +148,12 @@ for of in spectrum exponents; do
   expect 0 "$clast" $of kinds.db
   ! sed '/^clast/d' out | grep -q "kg" || fail "one unit of masses in the plane and in space: $(head -2 out)"
 done
+expect 0 "$clast" query kinds.db "SELECT upper, density FROM spectra LIMIT 1"
+! grep -q "kg" out || fail "one unit of densities in the plane and in space: $(head -2 out)"
+for of in "fixed.db upper [kg/m] density [m/kg]" "own-rocks.db upper [kg] density [kg^-1]"; do
+  expect 0 "$clast" query ${of%% *} "SELECT upper, density FROM spectra LIMIT 1"
+  same "$(sed -n 1p out | tr -s ' ' | sed 's/^ //')" "${of#* }" "units of a spectrum in ${of%% *}"
+done
 expect 64 "$clast" spectrum kinds.db --picture kinds.png
 says "some in the plane, with masses in kg/m"
 expect 0 "$clast" spectrum kinds.db --campaign fixed --picture kinds.png
@@ -396,4 +402,4 @@ if [ "$sanitized" -eq 0 ]; then
 else
   ok "1"; ok "2" # the sanitizer's library must be loaded first
 fi
-done_after 157
+done_after 162

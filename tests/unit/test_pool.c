@@ -24,7 +24,7 @@ static void look(struct seen *seen, const struct ask_pool *pool) {
     assert_true(pool->data.run_id[r] > 0);
     if (pool->value) {
       seen->sum += pool->value[r];
-      assert_true(pool->seed[r] >= 1000 && pool->seed[r] < 1000 + RUNS);
+      assert_true(pool->data.seed[r] >= 1000 && pool->data.seed[r] < 1000 + RUNS);
       continue;
     }
     seen->fragments += pool->data.runs.first[r + 1] - pool->data.runs.first[r];
