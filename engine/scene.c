@@ -84,13 +84,14 @@ static void drop_other_name(document_node *section, document_node *base, const s
   }
 }
 
-static status take_like(document_node *root, const struct engine_materials *materials, struct error *error) {
-  document_node *node = document_key(root, "like");
-  const char *word = node ? document_scalar(node) : "", *text = word && *word ? materials->text(word) : NULL;
+static status take_like(document_node *root, document_node *node, const struct engine_materials *materials,
+                        struct error *error) {
+  const char *word = document_scalar(node), *text = word && *word ? materials->text(word) : NULL;
   OWNED void *unused = memory_small(1, materials->values->size);
   struct document *base = NULL;
-  if (!node)
-    return STATUS_OK;
+  if (word && file_name_is_document(word))
+    return status_fail(error, STATUS_CONTENT,
+                       "only built-in materials can be named here, no files: `clast materials` lists them");
   if (!text)
     return word ? materials->load(word, unused, error)
                 : status_fail(error, STATUS_CONTENT, "expected the name of a material, such as like: granite");
@@ -100,14 +101,18 @@ static status take_like(document_node *root, const struct engine_materials *mate
                                                     : status_fail(error, STATUS_MEMORY, "no memory for a material");
 }
 
-status scene_material_complete(document_node *root, const struct engine_materials *materials, struct error *error) {
-  const status code = take_like(root, materials, error);
+bool scene_material_complete(document_node *root, const struct engine_materials *materials) {
+  document_node *like = document_key(root, "like");
+  struct error error;
+  const bool good = !like || take_like(root, like, materials, &error) == STATUS_OK;
+  if (!good)
+    document_report_error(like, "like", &error);
   for (const char *const *word = materials->not_values; word && *word; word++)
     if (document_key(root, *word)) {
-      document_graft_drop(root, *word);
-      return status_fail(error, STATUS_CONTENT, "'%s' is no value of a material: %s", *word, materials->instead);
+      document_report(document_key(root, *word), NULL, "'%s' is no value of a material: %s", *word, materials->instead);
+      return false;
     }
-  return code;
+  return good;
 }
 
 /* What the input `name` gets: the file's own name, after the rock's, "weak sandstone - rock.yaml", if that is another
@@ -129,14 +134,16 @@ static void own_name(const char *file, struct document *document, const struct e
 /* Opens a material's file. On failure *out is NULL. */
 static status open_material(const char *path, const struct engine_materials *materials, struct document **out,
                             struct error *error) {
-  struct error why;
-  TRY(document_open(path, out, error));
-  const status code = scene_material_complete(document_root(*out), materials, &why);
-  if (code == STATUS_OK)
-    return STATUS_OK;
+  status code = document_open(path, out, error);
+  if (code == STATUS_MISSING && strstr(path, " - ")) /* as own_name() writes it */
+    text_append(error->message, sizeof error->message,
+                ". Tables show a rock as its name - its file's name: give the file alone, with its folder");
+  if (code != STATUS_OK || scene_material_complete(document_root(*out), materials))
+    return code;
+  code = document_verdict(*out, error);
   document_free(*out);
   *out = NULL;
-  return status_fail(error, code, "%.300s: %.3000s", path, why.message);
+  return code;
 }
 
 /* `place`: where errors about the file are reported. */

@@ -60,9 +60,9 @@ void scene_drop(struct scene **scene); /* for SCENE */
  * Conditions across fields are not checked. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
-/* Adds to the document of a material what the key `like` names: a built-in material. STATUS_MISSING, STATUS_MEMORY;
- * STATUS_CONTENT also for a key of materials->not_values. */
-status scene_material_complete(document_node *root, const struct engine_materials *materials, struct error *error);
+/* Adds to the document of a material what the key `like` names: a built-in material. False: an error is reported in the
+ * document, also for a key of materials->not_values. */
+bool scene_material_complete(document_node *root, const struct engine_materials *materials);
 /* The settings of this name, or NULL. */
 const struct scene_settings *scene_settings_find(const struct scene *scene, const char *name);
 /* Applies settings, as if the document gave their inputs. "standard" changes nothing. STATUS_MISSING: unknown name; the

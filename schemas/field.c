@@ -111,6 +111,10 @@ static bool is_near_in(const struct field_table *table, const char *section, con
 }
 
 static void fail_unknown(const struct field_table *table, const char *path, struct error *error) {
+  if (table->lacking && strstr(path, table->lacking)) {
+    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s': %s", table->name, QUOTE, path, table->instead);
+    return;
+  }
   char members[512];
   field_members(table, path, "'", members, sizeof members);
   if (*members) {

@@ -77,9 +77,11 @@ struct field_table {
   size_t size;      /* sizeof the struct described */
   const char *name; /* "dem scene", for messages */
   const char *doc;
+  const char *lacking, *instead; /* NULL, or a word of paths that people expect, and what the table has instead */
 };
-#define FIELD_TABLE(rows_, type_, name_, doc_)                                                                         \
-  { .rows = rows_, .count = sizeof rows_ / sizeof rows_[0], .size = sizeof(type_), .name = name_, .doc = doc_ }
+/* More members may follow: .lacking = ... */
+#define FIELD_TABLE(rows_, type_, name_, ...)                                                                          \
+  { .rows = rows_, .count = sizeof rows_ / sizeof rows_[0], .size = sizeof(type_), .name = name_, .doc = __VA_ARGS__ }
 
 /* Builds a flat table from one with nests, rows in the order of the source. *out owns all its rows and texts, so the
  * source may go: a table can be made at run time. field_table_free() frees it; after an error it is empty.

@@ -258,8 +258,11 @@ static void read_inputs(struct reading *r, document_node *list) {
       add_knob(d, row, in->resolution);
   }
   d->input_count = count;
-  d->inputs = (struct field_table){d->input_rows, count + PROGRAM_ROWS, size, definition_base.name,
-                                   "The inputs that the scene's section `command` names."};
+  d->inputs = (struct field_table){.rows = d->input_rows,
+                                   .count = count + PROGRAM_ROWS,
+                                   .size = size,
+                                   .name = definition_base.name,
+                                   .doc = "The inputs that the scene's section `command` names."};
 }
 
 static void read_results(struct reading *r, document_node *list) {
@@ -293,8 +296,11 @@ static void read_results(struct reading *r, document_node *list) {
                                        .doc = result->doc};
   }
   d->result_count = count;
-  d->results = (struct field_table){d->result_rows, count, (count + 1) * sizeof(double), "command result",
-                                    "The results that the scene's section `command` names."};
+  d->results = (struct field_table){.rows = d->result_rows,
+                                    .count = count,
+                                    .size = (count + 1) * sizeof(double),
+                                    .name = "command result",
+                                    .doc = "The results that the scene's section `command` names."};
 }
 
 /* ---- placeholders ---- */

@@ -78,7 +78,11 @@ printf 'material: thin\nlike: basalt\ndensity: 2.2 g/cm^3\n' >rocks/thin.yaml
 expect 0 "$clast" materials rocks/thin.yaml
 sed 's/like: .*/like: basald/' rocks/thin.yaml >wrong.yaml
 expect 65 "$clast" materials ./wrong.yaml
-says "did you mean 'basalt'"
+says "wrong.yaml:2:7: error: like: there is no material 'basald'; did you mean 'basalt'?"
+sed 's/like: .*/like: .\/thin.yaml/' rocks/thin.yaml >wrong.yaml
+scene ./wrong.yaml >s.yaml
+expect 65 "$clast" explain ./s.yaml
+says "wrong.yaml:2:7: error: like: only built-in materials can be named here, no files"; one_error
 scene rocks/own.yaml >s.yaml
 density() { "$clast" explain "$@" --json | python -c "
 import json, sys; print(*[r['value'] for r in json.load(sys.stdin) if r['path'] in ('target.material.name', 'target.material.density')])"; }
@@ -89,6 +93,8 @@ same "$(density basalt-sphere --set target.material=rocks/own.yaml)" "own.yaml 2
 same "$(density s.yaml --set target.material=rocks/thin.yaml --set target.material.density='1 g/cm^3')" "thin.yaml 1000" "a value over a file"
 expect 66 "$clast" explain s.yaml --set target.material=none.yaml
 says "none.yaml: there is no such file"
+expect 66 "$clast" explain s.yaml --set 'target.material.name=thin - thin.yaml'
+says "Tables show a rock as its name - its file's name: give the file alone, with its folder"
 expect 64 "$clast" explain s.yaml --set material=granite
 says "'target.material.name', 'projectile.material.name'"
 pores() { "$clast" explain basalt-sphere "$@" --json | python -c "
@@ -104,6 +110,11 @@ expect 0 "$clast" run rocks/mix.yaml --quiet
 same "$(sqlite3 mix.db "select count(*) from run")" 6 "runs after the same command again"
 expect 0 "$clast" plot mix.db bars.png -x material
 expect 0 "$clast" check mix.db
+# Values of rocks follow from their names also in a merge whose campaigns begin with other rocks.
+sed 's/name: mix/name: back/; s/\[basalt.*\]/[.\/thin.yaml, basalt]/' rocks/mix.yaml >rocks/back.yaml
+expect 0 "$clast" run rocks/back.yaml --quiet
+expect 0 "$clast" merge mixed.db mix.db back.db
+same "$(sqlite3 mixed.db "select group_concat(path) from axis") $(grep -c 'differ in' err)" "target.material.name 0" "inputs of merged rocks"
 
 # A rock is shown by its own name, with the file's; two rocks of one name are refused. A value that a reader expects, once.
 mkdir -p other
@@ -205,4 +216,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 72
+done_after 77

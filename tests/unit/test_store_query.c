@@ -476,8 +476,11 @@ static void the_same_seeds_are_seen(void **state) {
   struct fixture_inputs inputs;
   struct fixture_run f;
   int64_t campaign, session, older, newer;
-  const struct field_table fewer = {fixture_input_rows, sizeof fixture_input_rows / sizeof *fixture_input_rows - 1,
-                                    sizeof inputs, "fake scene", "A scene for tests."};
+  const struct field_table fewer = {.rows = fixture_input_rows,
+                                    .count = sizeof fixture_input_rows / sizeof *fixture_input_rows - 1,
+                                    .size = sizeof inputs,
+                                    .name = "fake scene",
+                                    .doc = "A scene for tests."};
   struct engine_kind before = fixture_kind;
   before.inputs = &fewer;
   OK(store_open_writer(fixture_path(path, "twins"), &store, NULL, 0, &error));

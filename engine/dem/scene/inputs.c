@@ -163,7 +163,11 @@ static const struct field rows[] = {
 
 const struct field_table dem_inputs = FIELD_TABLE(
     rows, struct dem_inputs, "dem scene",
-    "Discrete elements in the plane: Voronoi grains joined by breakable beams (Kun, D'Addetta, Herrmann & Ramm 1999).");
+    "Discrete elements in the plane: Voronoi grains joined by breakable beams (Kun, D'Addetta, Herrmann & Ramm 1999).",
+    .lacking = "material",
+    .instead =
+        "grains of dem are of no rock; their values are grain.*, beam.*, threshold.* and contact.*, which 'clast "
+        "explain SCENE' lists. Rocks are for scenes of engine sph");
 
 bool dem_inputs_round(const struct dem_inputs *in) {
   return in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION || in->kind == DEM_RING_EXPLOSION;

@@ -75,12 +75,10 @@ static void read_sources(document_node *sources) {
 static const char *const own_keys[] = {"material", "source", "sources", "like", NULL};
 
 static status read_material(struct document *document, struct sph_material *out, struct error *error) {
-  struct error unknown;
   field_defaults(&sph_materials_table, out);
   document_node *root = document_root(document);
-  if (scene_material_complete(root, &sph_materials, &unknown))
-    document_report_error(root, NULL, &unknown);
-  else if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
+  if (scene_material_complete(root, &sph_materials) && document_read(root, &sph_materials_table, own_keys, out) &&
+      !(out->tillotson.E_cv > out->tillotson.E_iv))
     document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
   read_sources(document_key(root, "sources"));
   return document_verdict(document, error);
@@ -143,7 +141,7 @@ static void also_needed(const char *text, char *list, size_t size) {
     return;
   field_defaults(&sph_materials_table, &material);
   document_node *root = document_root(document);
-  if (scene_material_complete(root, &sph_materials, &unknown))
+  if (!scene_material_complete(root, &sph_materials))
     return;
   document_read_given(root, &sph_materials_table, own_keys, &material, given, NULL);
   for (size_t i = 0; i < sph_materials_table.count; i++) {
