@@ -30,7 +30,16 @@ bool campaign_walk_next(struct campaign_walk *walk) {
 }
 
 struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error *error) {
-  return campaign_point_scene(walk->campaign, walk->values, error);
+  const struct campaign *campaign = walk->campaign;
+  struct scene *scene = campaign_point_scene(campaign, walk->values, error);
+  for (size_t i = 0; !scene && error->status != STATUS_MEMORY && i < campaign->axis_count; i++) {
+    const struct field *row = campaign->axes[i].row;
+    char value[FIELD_TEXT_SIZE];
+    field_show(row, &walk->values[i], value, sizeof value);
+    text_append(error->message, sizeof error->message, "%s%s %s%s", i ? ", " : " (at ", row->path, value,
+                i + 1 == campaign->axis_count ? ")" : "");
+  }
+  return scene;
 }
 
 /* ---- Collects the engine's warnings about the first points of a campaign ---- */

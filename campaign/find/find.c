@@ -107,26 +107,38 @@ static status find_input(struct find *find, const char *name, struct error *erro
   return STATUS_OK;
 }
 
-static bool is_set(const struct find *find, const struct option_list *set, const struct field *row) {
+/* The inputs of `set` in the campaign's scene. */
+static status find_set(const struct find *find, const struct option_list *set, const struct field **rows,
+                       struct error *error) {
   char path[FIELD_TEXT_SIZE];
   const char *value;
-  struct error error;
   const struct scene *scene = find->campaign->scene;
-  for (size_t i = 0; i < set->count; i++)
-    if (campaign_change_split(set->items[i], path, &value, &error) == STATUS_OK &&
-        field_find_in(scene->kind->inputs, path, scene->inputs, &error) == row)
-      return true;
-  return false;
+  for (size_t i = 0; i < set->count; i++) {
+    TRY(campaign_change_split(set->items[i], path, &value, error));
+    rows[i] = field_find_in(scene->kind->inputs, path, scene->inputs, error);
+    if (!rows[i])
+      return STATUS_USAGE;
+  }
+  return STATUS_OK;
+}
+
+static bool is_set(const struct option_list *set, const struct field *const *rows, const struct field *row) {
+  size_t i = 0;
+  while (i < set->count && rows[i] != row)
+    i++;
+  return i < set->count;
 }
 
 /* The scene of the campaign with `set`. Only the input may have several values. */
 static status find_base(struct find *find, const struct option_list *set, struct error *error) {
   const struct campaign *campaign = find->campaign;
   OWNED struct field_value *values = NULL;
+  OWNED const struct field **rows = memory_small(set->count + 1, sizeof(const struct field *));
   TRY(memory_array(&values, campaign->axis_count + 1, sizeof *values, "a point", error));
+  TRY(find_set(find, set, rows, error));
   for (size_t i = 0; i < campaign->axis_count; i++) {
     const struct design_axis *axis = &campaign->axes[i];
-    if (axis->row != find->input && varies(axis) && !is_set(find, set, axis->row))
+    if (axis->row != find->input && varies(axis) && !is_set(set, rows, axis->row))
       return status_fail(error, STATUS_USAGE,
                          "the campaign varies %s as well as %s, and a crossing is along one input: --set %s=VALUE",
                          axis->row->path, find->input->path, axis->row->path);

@@ -203,6 +203,8 @@ expect 64 "$clast" find two.yaml --level 0.5
 says "varies 2 inputs: name one"
 expect 64 "$clast" find two.yaml --level 0.5 --input strain
 says "the campaign varies threshold.angle as well as threshold.strain"; says "--set threshold.angle=VALUE"
+expect 64 "$clast" find two.yaml --level 0.5 --input strain --set young_modulus=1GPa
+says "it may be 'grain.young_modulus', 'beam.young_modulus'"; one_error
 expect 0 "$clast" find two.yaml --level 0.5 --input strain --set angle=4deg --max-runs 20 --store set.db
 prints "The mean of largest_fraction"
 # Places are round in degrees.
@@ -210,4 +212,4 @@ expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg 
 prints "2 deg, 3 deg, 4 deg, 5 deg, 6 deg"
 expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --max-runs 20 --store set.db
 tr '\n' ' ' <err | grep -qE "'threshold.angle=[0-9.]+ deg'" || fail "the study advised is in other units: $(cat err)"
-done_after 61
+done_after 62
