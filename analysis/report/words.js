@@ -18,9 +18,10 @@ export function number(value, digits = 4) {
 }
 
 // The digits of tables (campaign/terminal/uncertainty.c): one digit of the error, two after a leading 1.
+const ONE_LEADS = 1.95;
 function lastDecade(half) {
   const leading = Math.floor(Math.log10(half));
-  return half < 2 * 10 ** leading ? leading - 1 : leading;
+  return half < ONE_LEADS * 10 ** leading ? leading - 1 : leading;
 }
 
 const fixed = (value, places) => (places === 0 && Math.abs(value % 1) === 0.5 ? 2 * Math.round(value / 2) : value).toFixed(places); // 2.5 is 2
@@ -47,7 +48,8 @@ export function between(value, low, high) {
 
 // "0.11 (0 to 0.27)": an interval that ends with the range of its result (campaign/terminal/uncertainty.c).
 function cutInterval(mean, low, high) {
-  const decade = lastDecade(Math.max(high - mean, mean - low)), last = mean < 2 * 10 ** decade ? decade - 1 : decade;
+  const decade = lastDecade(Math.max(high - mean, mean - low));
+  const last = Math.min(high - mean, mean - low) < ONE_LEADS * 10 ** decade ? decade - 1 : decade;
   const size = Math.max(Math.abs(low), Math.abs(high)), step = 10 ** last;
   if (Math.abs(last) > 15 || size < 1e-3 || size >= 1e15) return `${number(mean, 2)} (${number(low, 2)} to ${number(high, 2)})`;
   const large = size >= 1e6 && last >= 3; // 3×10⁷ (0 to 5×10⁷)

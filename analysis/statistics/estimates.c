@@ -13,9 +13,8 @@ FIELD_WORDS(
     ESTIMATES_WINDOWS, [ESTIMATES_FROM_2] = "from_2", [ESTIMATES_FROM_5] = "from_5", [ESTIMATES_FROM_10] = "from_10");
 static const char *const window_docs =
     "from 1.5 mean masses of an element (grain or particle). Of one run: without single elements. Of a point: by mass "
-    "alone, so that single grains heavier than that are in it, 5 to 12 % of its fragments in the demo. With elements "
-    "of "
-    "one mass, method masses reads 0.02 to 0.04 low at 2, 0.08 at 2.5\n"
+    "alone, so that single grains heavier than that are in it, 5 to 12 % of its fragments in the demo. Where "
+    "all elements have one mass, the exponent by method masses is too low: by 0.02 to 0.04 for 2, by 0.08 for 2.5\n"
     "from 4.5 mean element masses\n"
     "from 9.5 mean element masses";
 static const char *const method_docs =

@@ -68,21 +68,23 @@ double exponent_step(size_t n, const double *masses, size_t begin, size_t end, d
 }
 
 /* The part of a bin that counts: the whole bin, or from half an element below its first whole number of elements to
- * half an element above its last one. Empty: low = high. */
+ * half an element above its last one. The whole bin where it holds none: other masses may be in it. */
 static void bin_part(int bin, double element, double *low, double *high) {
   *low = spectrum_edge(bin);
   *high = spectrum_edge(bin + 1);
-  if (element > 0) {
-    const double from = ceil(*low / element), to = ceil(*high / element);
+  const double rounding = 1 - 1e-9; /* of a step that is the rest of a division */
+  const double from = ceil(*low / element * rounding), to = ceil(*high / element * rounding);
+  if (element > 0 && to > from) {
     *low = element * (from - 0.5);
     *high = element * (to - 0.5);
   }
 }
 
 bool exponent_bin_may_be_empty(int bin, double element) {
-  double low, high;
-  bin_part(bin, element, &low, &high);
-  return low == high;
+  const double low = spectrum_edge(bin), high = spectrum_edge(bin + 1);
+  double first, last;
+  bin_part(bin, element, &first, &last);
+  return element > 0 && first == low && last == high;
 }
 
 /* Kun & Herrmann (1999) section 3.3: a straight line through log10 of each bin's density (count over width) against

@@ -466,7 +466,9 @@ static void choose(struct accuracy *accuracy) {
     const struct accuracy_option *option = &accuracy->options[i];
     if (option->seeds > 0)
       *(isnan(option->beyond) ? &open : &accuracy->chosen) = i;
-    if (need_of(option) <= need_of(&accuracy->options[accuracy->reference]))
+    const struct accuracy_option *least = &accuracy->options[accuracy->reference];
+    const double need = need_of(option), most = need_of(least);
+    if (need < most || (need == most && (need < HUGE_VAL || option->own)))
       accuracy->reference = i;
   }
   if (in_time && accuracy->chosen == accuracy->count)

@@ -359,11 +359,11 @@ struct query_value ask_columns_value(const struct ask_column *column, const stru
 
 void ask_columns_show(const struct ask_column *column, const struct query_value *value, char *text, size_t size) {
   const struct query_value shown = ask_columns_value(column, value);
-  const bool whole = shown.real == rint(shown.real) && fabs(shown.real) < 1e6;
   if (shown.kind == QUERY_TEXT || shown.kind == QUERY_NULL) {
     snprintf(text, size, "%s", shown.kind == QUERY_TEXT ? shown.text : "off");
     return;
   }
+  const bool whole = shown.real == rint(shown.real) && fabs(shown.real) < 1e6;
   const char *unit = strcmp(column->unit, "1") == 0 ? "" : column->unit;
   snprintf(text, size, whole ? "%.0f%s%s" : "%.3g%s%s", shown.real, *unit ? " " : "", unit);
   text_powers(text, size);

@@ -239,9 +239,9 @@ def whole_store(browser):
     table = rows_of(["spectrum", other, "--by", "", "--csv"])
     assert len(drawn) == len(table) > 10, (len(drawn), len(table))
     for a, b in zip(drawn, table):
-        for got, want in ((a["lower_kg"], b["lower"]), (a["number_density"], b["number_density"]), (a["number_density_hw95"], b["number_density_hw95"])):
-            assert bool(got) == bool(want), (a, b)  # equal counts have no interval
-            assert abs(float(got or 0) - float(want or 0)) <= 1e-9 * abs(float(want or 0)), (a, b)
+        assert a["number_density_hw95"] == ""  # needs the runs: points share seeds
+        for got, want in ((a["lower_kg"], b["lower"]), (a["number_density"], b["number_density"])):
+            assert abs(float(got) - float(want)) <= 1e-9 * abs(float(want)), (a, b)
     count = shown(browser)
     browser.js("const box = document.querySelector('[name=quantity]'); box.value = 'broken'; box.dispatchEvent(new Event('change')); 0")
     wait_shown(browser, count + 1)

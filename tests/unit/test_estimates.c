@@ -126,6 +126,12 @@ static void whole_masses_have_their_exponent(void **state) {
   assert_int_equal(exponent_fit(EXPONENT_LEAST_SQUARES, N, real, window, &fit_real, NULL), STATUS_OK);
   if (!(fabs(fit.beta - 2) < 0.02) || !(fabs(fit_real.beta - 2) < 0.02))
     fail_msg("%g of whole masses, %g of real ones", fit.beta, fit_real.beta);
+  double strayed[200]; /* one fragment of another body lies between 3.16 and 3.98, where no whole number is */
+  for (int i = 0; i < 200; i++)
+    strayed[i] = i == 150 ? 3.5 : ceil(masses[i * 90] / 3);
+  const struct exponent_window wide = {1.5, 15};
+  assert_int_equal(exponent_fit(EXPONENT_LEAST_SQUARES, 200, strayed, wide, &fit_real, NULL), STATUS_OK);
+  assert_true(isfinite(fit_real.beta));
   const size_t first[] = {0, N};
   const struct pooled_runs runs = {1, first, masses};
   struct pooled_exponent pooled;
