@@ -698,12 +698,9 @@ struct answer ask_page_kept(struct store *store, struct error *error) {
       "(PARTITION BY point_id) - 1 AS last, max(%s) OVER (PARTITION BY point_id) > min(%s) OVER (PARTITION BY point_id)"
       " AS differ FROM run WHERE counts AND results_version = (SELECT max(results_version) "
       "FROM run AS newest WHERE newest.point_id = run.point_id) WINDOW point AS (PARTITION BY point_id ORDER BY %s, "
-      "run_id)) SELECT run_id, point_id, CASE WHEN differ IS NOT 1 THEN iif(place = (last + 1) / 2, 0.5, NULL) WHEN "
-      "place "
-      "IN "
-      "(0, (last + 1) / 2, last) THEN 1.0 * place / last END AS quantile, fields_path FROM ranked WHERE "
-      "typeof(fields_path) = 'text' ORDER BY quantile IS "
-      "NULL, abs(quantile - 0.5) > 0.25, point_id, quantile, run_id",
+      "run_id)) SELECT run_id, point_id, CASE WHEN differ IS 1 AND place IN (0, (last + 1) / 2, last) "
+      "THEN 1.0 * place / last END AS quantile, fields_path FROM ranked WHERE typeof(fields_path) = 'text' "
+      "ORDER BY quantile IS NULL, abs(quantile - 0.5) > 0.25, point_id, quantile, run_id",
       OUTCOME_DEFAULT, OUTCOME_DEFAULT, OUTCOME_DEFAULT);
 }
 
