@@ -67,24 +67,28 @@ double exponent_step(size_t n, const double *masses, size_t begin, size_t end, d
   return best;
 }
 
-/* The part of a bin that counts: the whole bin, or from half an element below its first whole number of elements to
- * half an element above its last one. The whole bin where it holds none: other masses may be in it. */
-static void bin_part(int bin, double element, double *low, double *high) {
+/* The part of a bin that counts, and log10 of its middle: the whole bin, or from half an element below its first whole
+ * number of elements to half an element above its last one. False: it holds none; the whole bin, as other masses may be
+ * in it. */
+static bool bin_part(int bin, double element, double *low, double *high, double *middle) {
+  const double rounding = 1 - 1e-9; /* of a step that is the rest of a division */
   *low = spectrum_edge(bin);
   *high = spectrum_edge(bin + 1);
-  const double rounding = 1 - 1e-9; /* of a step that is the rest of a division */
+  *middle = (bin + 0.5) / SPECTRUM_BINS_PER_DECADE;
+  if (!(element > 0))
+    return true;
   const double from = ceil(*low / element * rounding), to = ceil(*high / element * rounding);
-  if (element > 0 && to > from) {
-    *low = element * (from - 0.5);
-    *high = element * (to - 0.5);
-  }
+  if (!(to > from))
+    return false;
+  *low = element * (from - 0.5);
+  *high = element * (to - 0.5);
+  *middle = 0.5 * (log10(*low) + log10(*high));
+  return true;
 }
 
 bool exponent_bin_may_be_empty(int bin, double element) {
-  const double low = spectrum_edge(bin), high = spectrum_edge(bin + 1);
-  double first, last;
-  bin_part(bin, element, &first, &last);
-  return element > 0 && first == low && last == high;
+  double low, high, middle;
+  return !bin_part(bin, element, &low, &high, &middle);
 }
 
 /* Kun & Herrmann (1999) section 3.3: a straight line through log10 of each bin's density (count over width) against
@@ -96,9 +100,9 @@ static void least_squares(size_t n, const struct spectrum_bin_row *bins, double 
   for (size_t i = 0; i < n; i++) {
     if (bins[i].bin < first || bins[i].bin >= end || bins[i].count <= 0)
       continue;
-    double low, high;
-    bin_part(bins[i].bin, element, &low, &high);
-    double x = 0.5 * log10(low * high), y = log10((double)bins[i].count / (high - low));
+    double low, high, x;
+    bin_part(bins[i].bin, element, &low, &high, &x);
+    double y = log10((double)bins[i].count / (high - low));
     points++; /* Welford's update avoids cancellation */
     double dx = x - mean_x, dy = y - mean_y;
     mean_x += dx / points;
