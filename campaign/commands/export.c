@@ -7,7 +7,7 @@
 
 struct options {
   const char *per, *license, *author;
-  bool csv, lines, bits, cinema, crate, dakota;
+  bool csv, lines, bits, crate, dakota;
 };
 
 /* Does the name promise a table? */
@@ -23,15 +23,15 @@ static bool is_table(const char *name) {
 /* Options that exclude each other. */
 static status check(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const bool other = options->bits || options->cinema || options->crate;
+  const bool other = options->bits || options->crate;
   const struct ask_choice *choice = &line->choice;
   const struct rule {
     bool broken;
     const char *text;
   } rules[] = {
-      {options->csv + options->lines + options->bits + options->cinema + options->crate + options->dakota > 1,
-       "--csv, --jsonl, --bits, --cinema, --crate and --dakota exclude each other"},
-      {options->per && other, "--per excludes --bits, --cinema and --crate"},
+      {options->csv + options->lines + options->bits + options->crate + options->dakota > 1,
+       "--csv, --jsonl, --bits, --crate and --dakota exclude each other"},
+      {options->per && other, "--per excludes --bits and --crate"},
       {(choice->point || choice->campaign || choice->where) && !options->per && !options->csv,
        "--point, --campaign and --where belong to --per and --csv: other forms have the whole store"},
       {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
@@ -66,8 +66,6 @@ static status ask(struct store *store, const struct command_line *line, struct e
                            error));
   else if (options->csv)
     TRY(export_files_folder(store, target, error));
-  else if (options->cinema)
-    TRY(export_cinema(store, target, error));
   else if (options->crate)
     TRY(export_crate(store, line->arguments[0], &crate, error));
   else if (options->bits)
@@ -87,7 +85,6 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("dakota", 0, struct options, dakota),
     OPTION_ROW_FLAG("csv", 0, struct options, csv),
     OPTION_ROW_FLAG("bits", 0, struct options, bits),
-    OPTION_ROW_FLAG("cinema", 0, struct options, cinema),
     OPTION_ROW_FLAG("crate", 0, struct options, crate),
     OPTION_ROW_TEXT("license", 0, "URL", struct options, license, NULL),
     OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL),

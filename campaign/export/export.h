@@ -30,15 +30,6 @@ struct export_crate_options {
 status export_crate(struct store *store, const char *store_path, const struct export_crate_options *options,
                     struct error *error);
 
-/* A Cinema database: a folder with pictures and a table of them (data.csv, Cinema specification D), which the Cinema
- * viewers open: the validator cinema_lib 1.2.1 finds it valid, also with empty cells, and Cinema:View 1.1 shows every
- * row. */
-
-/* One row per run whose fields are kept: its inputs and main results, FILE (its broken body) and FILE_spectrum
- * (spectrum of its point). data.csv is written last. Reports how many runs have no picture because their fields cannot
- * be read. STATUS_USAGE: the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
-status export_cinema(struct store *store, const char *folder, struct error *error);
-
 /* ---- one run for other programs ---- */
 
 /* Reads a fields file and writes, by the ending of `target`: fragments as CSV (.csv) or as the lines that REBOUND reads

@@ -864,26 +864,6 @@ status ask_run_wall_times(struct store *store, const char *scene, uint64_t *coun
   return answer_end(&answer);
 }
 
-struct answer ask_run_kept(struct store *store, struct error *error) {
-  struct ask_column axes[LIMITS_AXES_OF_TABLE];
-  const char *results[VIEWS_STATISTICS_MAIN];
-  const size_t result_count = views_statistics_main(results);
-  size_t axis_count = 0;
-  const status code = ask_columns_axes(store, false, LIMITS_AXES_OF_TABLE, axes, &axis_count, error);
-  if (code)
-    return answer_failed(code, error);
-  sqlite3_str *columns = sqlite3_str_new(NULL);
-  for (size_t i = 0; i < axis_count + result_count; i++)
-    sqlite3_str_appendf(columns, ", \"%w\"", i < axis_count ? axes[i].name : results[i - axis_count]);
-  return answer_to(
-      store, error,
-      "SELECT run_id, point_id, seed%z, warnings, fields_path AS fields FROM runs WHERE counts AND typeof(fields_path) "
-      "= "
-      "'text' AND results_version = (SELECT max(results_version) FROM run AS newest WHERE newest.point_id = "
-      "runs.point_id) ORDER BY point_id, replicate",
-      sqlite3_str_finish(columns));
-}
-
 char *ask_run_fields(const struct answer *answer, size_t column) {
   return paths_of_fields(answer->store->path, answer_text(answer, column));
 }

@@ -366,9 +366,6 @@ status ask_run_wall_time(struct store *store, const uint8_t identity[16], double
 status ask_run_wall_times(struct store *store, const char *scene, uint64_t *count, double *sum, double *most,
                           double *cpu_s, struct error *error);
 
-/* One row per run that counts and has its fields kept, of each point's newest results_version: run_id, point_id, seed,
- * the varied inputs, the main results, `warnings`, and last `fields`. */
-struct answer ask_run_kept(struct store *store, struct error *error);
 /* The path of the file that a row names in this column, as this process can open it: the store holds it relative to its
  * own folder. The caller frees it; NULL: no memory. */
 char *ask_run_fields(const struct answer *answer, size_t column);

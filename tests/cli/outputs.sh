@@ -143,7 +143,7 @@ for command in commands:
         for victim, must in victims("png" in value or name in ("picture", "frontier"), operands):
             attempt([command, *base, *with_inputs(operands, victim), f"--{name}", victim], victim, must)
 
-for mode in ([], ["--bits"], ["--csv"], ["--cinema"], ["--crate"], ["--per", "point", "--jsonl"]):
+for mode in ([], ["--bits"], ["--csv"], ["--crate"], ["--per", "point", "--jsonl"]):
     for victim, must in victims(False, ["self.db"]):
         attempt(["export", "self.db", victim, *mode], "", {64, 74})
 assert {"simulate --fields", "simulate --restart", "replay --fields", "report --output", "converge --frontier",

@@ -219,24 +219,6 @@ for question in ("select count(*) from runs", "select value from fact where name
 PY
 ok "the page of a watched campaign ends with all its runs"
 
-# The same runs as a Cinema database: every row's pictures are there.
-expect 0 "$clast" export small.db small.cdb --cinema
-python - <<'PY'
-import csv, os, sqlite3
-rows = list(csv.DictReader(open('small.cdb/data.csv')))
-db = sqlite3.connect('file:small.db?mode=ro', uri=True)
-kept = {str(run): m for run, m in db.execute('select run_id, largest_fraction from run where fields_path is not null')}
-assert {row['run_id'] for row in rows} == set(kept) and len(kept) >= 8, (rows, kept)
-for row in rows:
-    assert float(row['largest_fraction']) == kept[row['run_id']] and row['threshold_strain'] in ('0.02', '0.05')
-    for column in ('FILE', 'FILE_spectrum'):
-        assert open(os.path.join('small.cdb', row[column]), 'rb').read(8) == b'\x89PNG\r\n\x1a\n', row
-PY
-ok "a Cinema database"
-expect 64 "$clast" export watched.db watched.cdb --cinema
-says "keep"
-[ ! -e watched.cdb/data.csv ] || fail "a table of nothing was left behind"
-
 if [ "$sanitized" -eq 0 ]; then
   command -v chromium >/dev/null || fail "chromium is missing: ./setup.sh packages installs it"
   tiny other # 8 points, too many to distinguish in one chart
@@ -300,7 +282,7 @@ JS
   expect 0 "$clast" report levels.db --studies
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 72
+  done_after 69
 else
-  done_after 47
+  done_after 44
 fi
