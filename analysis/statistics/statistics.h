@@ -711,16 +711,14 @@ status scatter_split(const struct scatter_table *table, struct scatter_part *par
 
 /* ---- which input matters ----
  *
- * Which input matters: Sobol indices from a Saltelli design, and Morris's elementary effects as the cheap form. The
- * seed of a run is an additional input with its own indices.
+ * Which input matters: Sobol indices from a Saltelli design. The seed of a run is an additional input with its own
+ * indices.
  *
  * Indices (Sobol 2001, doi 10.1016/S0378-4754(00)00270-6) are shares of the variance V of y(inputs, seed). First order:
  * the variance over an input of y averaged over all others. Total: the mean variance caused by the input when all
  * others are fixed. It exceeds the first order if the input interacts with others. */
 
-/* Blocks of a design. A block of Saltelli's design has inputs + 2 points: A, B and, for every input i, A with input i
- * from B. A block of Morris's design is a trajectory of inputs + 1 points; step i changes input order[block * inputs +
- * i]. */
+/* Blocks of a design. A block has inputs + 2 points: A, B and, for every input i, A with input i from B. */
 struct sensitivity_table {
   size_t inputs, blocks, seeds;
   const double *value;   /* value[(block * points of a block + point) * seeds + r] of the point's r-th seed */
@@ -740,16 +738,6 @@ struct sensitivity_index {
  * (b), total Jansen (1999); both use different seeds where noise would bias them. STATUS_USAGE: fewer than two
  * blocks. */
 status sensitivity_sobol(const struct sensitivity_table *table, struct sensitivity_index *index, struct error *error);
-
-struct sensitivity_effect {             /* in units of y for the whole range of an input, as quantile 0 to 1 */
-  struct sample_interval mean_absolute; /* mu* (Campolongo et al. 2007); its interval over trajectories */
-  double mean;                          /* mu */
-  double deviation; /* sigma: large compared with mu* if the input is nonlinear or interacts with others */
-  double noise;     /* mu* caused by seeds alone; NaN for one seed */
-};
-/* step: signed change of the quantile at each step, step[block * inputs + i]; order as above. */
-status sensitivity_morris(const struct sensitivity_table *table, const size_t *order, const double *step,
-                          struct sensitivity_effect *effect, struct error *error);
 
 /* First-order indices from any points: Latin hypercube, random, Sobol, lists, grids. An input is taken by the ranks of
  * its values, so a logarithmic axis is like any other; the index is of the values as the points have them.

@@ -14,12 +14,10 @@ static status write_design(const struct command_line *line, struct error *error)
                        "--design writes a campaign: clast sensitivity CAMPAIGN.yaml NEW.yaml "
                        "--design %s",
                        options->design);
-  const bool morris = strcmp(options->design, "morris") == 0;
-  if (!morris && strcmp(options->design, "saltelli") != 0)
-    return status_fail(error, STATUS_USAGE, "--design is saltelli or morris, not '%s'", options->design);
-  const status code = sensitivity_design_write(line->arguments[0], line->arguments[1],
-                                               morris ? DESIGN_SENSITIVITY_MORRIS : DESIGN_SENSITIVITY_SALTELLI,
-                                               (size_t)options->blocks, (uint64_t)options->seed, error);
+  if (strcmp(options->design, "saltelli") != 0)
+    return status_fail(error, STATUS_USAGE, "--design is saltelli, not '%s'", options->design);
+  const status code = sensitivity_design_write(line->arguments[0], line->arguments[1], (size_t)options->blocks,
+                                               (uint64_t)options->seed, error);
   char word[TEXT_WORD];
   (void)text_word(line->arguments[1], word);
   if (code == STATUS_OK)

@@ -97,22 +97,19 @@ enum { DESIGN_SOBOL_BITS = 30 }; /* GSL's resolution */
 uint32_t design_sobol_shift(uint64_t seed,
                             size_t dimension); /* DESIGN_SOBOL_BITS bits, XORed into the integer coordinate */
 
-/* Designs for sensitivity indices: blocks of points in the form that sensitivity_sobol() needs. */
+/* The design for sensitivity indices of Saltelli (2002): blocks of points in the form that sensitivity_sobol() needs. A
+ * block is A, B, and A with one input of B for each input; A and B are Sobol numbers, in groups of blocks with
+ * independent random shifts. */
 
-enum design_sensitivity_kind {
-  DESIGN_SENSITIVITY_SALTELLI, /* A, B, and A with one input of B for each input; A and B are Sobol numbers, in groups
-                                * of blocks with independent random shifts */
-  DESIGN_SENSITIVITY_MORRIS,   /* trajectories from a random place on four levels, two levels a step */
-};
 struct design_sensitivity; /* opaque */
 
-/* blocks: best a power of two for Saltelli, from 64 on. STATUS_CONTENT: no input, more inputs than Sobol numbers allow
- * (20), or no block. */
-status design_sensitivity_create(enum design_sensitivity_kind kind, size_t inputs, size_t blocks, uint64_t seed,
-                                 struct design_sensitivity **out, struct error *error);
+/* blocks: best a power of two, from 64 on. STATUS_CONTENT: no input, more inputs than Sobol numbers allow (20), or no
+ * block. */
+status design_sensitivity_create(size_t inputs, size_t blocks, uint64_t seed, struct design_sensitivity **out,
+                                 struct error *error);
 void design_sensitivity_free(struct design_sensitivity *design); /* NULL is fine */
 size_t design_sensitivity_rows(const struct design_sensitivity *design);
-/* The group of a block of Saltelli's design of so many blocks, counted from 0: eight groups, or every block its own if
+/* The group of a block of a design of so many blocks, counted from 0: eight groups, or every block its own if
  * there are fewer than 16. Blocks of one group are spread evenly, so their errors are no independent ones. Different
  * groups are independent, so their scatter tells how far off an index is (Owen 1998, randomised quasi-Monte Carlo). */
 uint32_t design_sensitivity_group(size_t blocks, size_t block);

@@ -199,16 +199,12 @@ char *campaign_write_list(const struct campaign *campaign, const char *scene_ref
 status campaign_raise(struct campaign *campaign, const char *time, const char *memory, int64_t attempts,
                       struct error *error);
 
-/* Designs for sensitivity indices, written as a campaign with a file of points, and found again in such a campaign. */
+/* The design for sensitivity indices, written as a campaign with a file of points, and found again in such a campaign.
+ */
 
 /* Writes NEW.yaml, the campaign of `path` with another design, and NEW.csv, its points. Neither may exist. */
-status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,
-                                uint64_t seed, struct error *error);
+status sensitivity_design_write(const char *path, const char *output, size_t blocks, uint64_t seed,
+                                struct error *error);
 
-/* Finds the kind of design that the points of a campaign form, and its number of blocks. STATUS_USAGE: it is neither
- * design. */
-status sensitivity_design_find(const struct campaign *campaign, enum design_sensitivity_kind *kind, size_t *blocks,
-                               struct error *error);
-/* For a Morris design: the input that each step changes, and the signed change of its quantile. Both arrays: inputs x
- * blocks. */
-void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step);
+/* The number of blocks that the points of a campaign form. STATUS_USAGE: they are not this design. */
+status sensitivity_design_find(const struct campaign *campaign, size_t *blocks, struct error *error);

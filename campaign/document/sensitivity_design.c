@@ -1,4 +1,4 @@
-/* Writes designs for sensitivity indices, and finds them again. */
+/* Writes the design for sensitivity indices, and finds it again. */
 #include "campaign/document/campaign.h"
 
 #include <stdio.h>
@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include "schemas/file.h"
-
-static const double MORRIS_STEP = 0.5; /* change of the quantile: two of four levels */
 
 static status check_axes(const char *path, const struct campaign *campaign, struct error *error) {
   if (campaign->axis_count == 0 || *campaign->design.file)
@@ -90,8 +88,8 @@ static status write_files(const struct campaign *campaign, const struct design_s
   return ended;
 }
 
-status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,
-                                uint64_t seed, struct error *error) {
+status sensitivity_design_write(const char *path, const char *output, size_t blocks, uint64_t seed,
+                                struct error *error) {
   CAMPAIGN campaign = NULL;
   CAMPAIGN written = NULL;
   struct design_sensitivity *design = NULL;
@@ -102,7 +100,7 @@ status sensitivity_design_write(const char *path, const char *output, enum desig
   snprintf(points, sizeof points, "%.*s.csv", (int)(length - 5), output);
   TRY(campaign_load(path, &campaign, error));
   TRY(check_axes(path, campaign, error));
-  TRY(design_sensitivity_create(kind, campaign->axis_count, blocks, seed, &design, error));
+  TRY(design_sensitivity_create(campaign->axis_count, blocks, seed, &design, error));
   status code = write_files(campaign, design, output, points, error);
   design_sensitivity_free(design);
   TRY(code);
@@ -130,65 +128,14 @@ static bool is_saltelli(const struct campaign *campaign, size_t rows) {
   return true;
 }
 
-static bool is_morris(const struct campaign *campaign, size_t rows) {
-  const size_t n = campaign->axis_count;
-  for (size_t i = 0; i < rows; i++) {
-    size_t changed = 0;
-    for (size_t a = 0; i % (n + 1) > 0 && a < n; a++)
-      changed += !same(campaign, a, i, i - 1);
-    if (changed > 1)
-      return false;
-  }
-  return true;
-}
-
-status sensitivity_design_find(const struct campaign *campaign, enum design_sensitivity_kind *kind, size_t *blocks,
-                               struct error *error) {
+status sensitivity_design_find(const struct campaign *campaign, size_t *blocks, struct error *error) {
   const size_t n = campaign->axis_count, rows = *campaign->design.file ? (size_t)campaign->design.points : 0;
-  *kind = DESIGN_SENSITIVITY_SALTELLI;
   *blocks = rows / (n + 2);
   if (rows > 0 && rows % (n + 2) == 0 && is_saltelli(campaign, rows))
-    return STATUS_OK;
-  *kind = DESIGN_SENSITIVITY_MORRIS;
-  *blocks = rows / (n + 1);
-  if (rows > 0 && rows % (n + 1) == 0 && is_morris(campaign, rows))
     return STATUS_OK;
   return status_fail(
       error, STATUS_USAGE,
       "the points of this campaign are no design for sensitivity indices: `clast sensitivity "
       "CAMPAIGN.yaml NEW.yaml --design saltelli` writes one, `clast run NEW.yaml` fills its store NEW.db, "
       "and `clast sensitivity NEW.db NEW.yaml` prints them");
-}
-
-/* A step of an input with few values may change no value. Such a step is attributed to an input that no other step
- * changes. */
-void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step) {
-  const size_t n = campaign->axis_count;
-  for (size_t b = 0; b < blocks; b++) {
-    bool taken[64] = {false};
-    for (size_t k = 0; k < n; k++) {
-      const size_t i = b * (n + 1) + k;
-      size_t a = 0;
-      while (a < n && same(campaign, a, i, i + 1))
-        a++;
-      order[b * n + k] = a;
-      if (a == n)
-        continue;
-      const struct field_value *v = campaign->axes[a].levels;
-      const bool whole = campaign->axes[a].row->kind == FIELD_INTEGER;
-      const bool up = whole ? v[i + 1].integer > v[i].integer : v[i + 1].number > v[i].number;
-      step[b * n + k] = up ? MORRIS_STEP : -MORRIS_STEP;
-      taken[a] = true;
-    }
-    for (size_t k = 0; k < n; k++) {
-      size_t a = 0;
-      if (order[b * n + k] < n)
-        continue;
-      while (taken[a])
-        a++;
-      taken[a] = true;
-      order[b * n + k] = a;
-      step[b * n + k] = MORRIS_STEP;
-    }
-  }
 }

@@ -746,7 +746,6 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
 
 struct reading {
   struct campaign *campaign;
-  enum design_sensitivity_kind kind;
   size_t blocks, points; /* points of a block */
   struct run_cells cells;
   struct run_cell **place; /* cell of each row of the design; NULL: the store has no run of it */
@@ -902,50 +901,17 @@ static status print_sobol(const struct reading *r, enum table_format format, str
   return table_end(table, error);
 }
 
-static status print_morris(const struct reading *r, enum table_format format, struct error *error) {
-  const size_t n = r->table.inputs;
-  struct sensitivity_effect effect[LIMITS_AXES_OF_POOL];
-  OWNED size_t *order = NULL;
-  OWNED double *step = NULL;
-  TRY(memory_array(&order, n * r->blocks, sizeof *order, "the steps of a design", error));
-  TRY(memory_array(&step, n * r->blocks, sizeof *step, "the steps of a design", error));
-  sensitivity_design_steps(r->campaign, r->blocks, order, step);
-  for (size_t b = 0; b < r->whole; b++) { /* the complete blocks move to the front */
-    memmove(order + b * n, order + r->block[b] * n, n * sizeof *order);
-    memmove(step + b * n, step + r->block[b] * n, n * sizeof *step);
-  }
-  TRY(sensitivity_morris(&r->table, order, step, effect, error));
-  TABLE table = table_new(format, stdout);
-  table_columns(table, (const char *const[]){"input", "mean_absolute", "mean_absolute_hw95", "mean", "deviation",
-                                             "noise", NULL});
-  table_doubt_columns(table);
-  for (size_t i = 0; i < n; i++) {
-    table_text(table, name_of(r, i, format));
-    interval(table, &effect[i].mean_absolute, &r->cells.doubts);
-    table_rests_on(table, &r->cells.doubts);
-    table_reals(table, 3, (const double[]){effect[i].mean, effect[i].deviation, effect[i].noise});
-    table_doubt_cells(table, &r->cells.doubts);
-  }
-  if (table_for_people(format))
-    words_print(
-        stderr, "",
-        "clast: elementary effects of %zu trajectories, for the whole range of an input. deviation: large beside "
-        "mean_absolute if the input is curved or acts with others; noise: what seeds alone would make",
-        r->whole);
-  return table_end(table, error);
-}
-
 status print_sensitivity(struct store *store, const char *path, const char *quantity, enum table_format format,
                          struct error *error) {
   __attribute__((cleanup(release_reading))) struct reading r = {0};
   TRY(campaign_load(path, &r.campaign, error));
-  TRY(sensitivity_design_find(r.campaign, &r.kind, &r.blocks, error));
-  r.points = r.campaign->axis_count + (r.kind == DESIGN_SENSITIVITY_SALTELLI ? 2 : 1);
+  TRY(sensitivity_design_find(r.campaign, &r.blocks, error));
+  r.points = r.campaign->axis_count + 2;
   TRY(read_runs(store, quantity, &r, error));
   shorten(store, format, &r.cells);
   if (r.whole < r.blocks)
     fprintf(stderr, "clast: %zu of %zu blocks lack a finished run and are left out\n", r.blocks - r.whole, r.blocks);
-  TRY(r.kind == DESIGN_SENSITIVITY_SALTELLI ? print_sobol(&r, format, error) : print_morris(&r, format, error));
+  TRY(print_sobol(&r, format, error));
   if (table_for_people(format))
     uncertainty_doubts(&r.cells.doubts, stderr);
   return STATUS_OK;

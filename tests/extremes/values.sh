@@ -17,7 +17,7 @@ seeds: {per_point: 3}
 store: good.db
 YAML
 expect 0 "$clast" run range.yaml --quiet
-expect 0 "$clast" sensitivity range.yaml design.yaml --design morris --blocks 2
+expect 0 "$clast" sensitivity range.yaml design.yaml --design saltelli --blocks 2
 expect 0 "$clast" run design.yaml --store good.db --quiet
 expect 0 "$clast" converge disc-explosion --set body.diameter='8 cm' --set charge.energy='2 kJ/m' \
   --set stop.end_time='1 ms' --knob grains='8 mm,12 mm' --seeds 2 --within off --store good.db --quiet

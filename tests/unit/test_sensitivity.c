@@ -1,4 +1,4 @@
-/* Sobol indices of functions with known ones, with and without seeds; elementary effects of a plane; intervals. */
+/* Sobol indices of functions with known ones, with and without seeds; intervals. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,11 +31,11 @@ static double normal(uint64_t a, uint64_t b, uint64_t c) {
 
 /* Values of a design. shared: deviation that a seed adds equally at all points; own: deviation at each point
  * separately. */
-static double *evaluate(enum design_sensitivity_kind kind, size_t inputs, size_t base, size_t seeds, uint64_t shift,
-                        double (*f)(size_t, const double *), double shared, double own) {
+static double *evaluate(size_t inputs, size_t base, size_t seeds, uint64_t shift, double (*f)(size_t, const double *),
+                        double shared, double own) {
   struct design_sensitivity *design;
   double u[MOST];
-  assert_int_equal(design_sensitivity_create(kind, inputs, base, shift, &design, NULL), STATUS_OK);
+  assert_int_equal(design_sensitivity_create(inputs, base, shift, &design, NULL), STATUS_OK);
   const size_t rows = design_sensitivity_rows(design);
   double *value = malloc(rows * seeds * sizeof *value);
   assert_non_null(value);
@@ -56,7 +56,7 @@ static const double ishigami_variance = 13.844588;
 static void ishigami_indices(void **state) {
   (void)state;
   enum { BASE = 8192 };
-  double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, 2, 1, ishigami, 0, 0);
+  double *value = evaluate(3, BASE, 2, 1, ishigami, 0, 0);
   struct sensitivity_index index[4];
   assert_int_equal(sensitivity_sobol(&(struct sensitivity_table){3, BASE, 2, value, true, NULL}, index, NULL),
                    STATUS_OK);
@@ -72,7 +72,7 @@ static void ishigami_indices(void **state) {
 static void g_function_indices(void **state) {
   (void)state;
   enum { BASE = 2048 };
-  double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, MOST, BASE, 2, 1, g_function, 0, 0), whole = 1;
+  double *value = evaluate(MOST, BASE, 2, 1, g_function, 0, 0), whole = 1;
   struct sensitivity_index index[MOST + 1];
   assert_int_equal(sensitivity_sobol(&(struct sensitivity_table){MOST, BASE, 2, value, true, NULL}, index, NULL),
                    STATUS_OK);
@@ -94,7 +94,7 @@ static void the_share_of_the_seed(void **state) {
   const double variance = ishigami_variance; /* the seed has half of the total variance */
   for (int kind = 0; kind < 2; kind++) {
     const double shared = kind ? sqrt(0.75 * variance) : 0, own = sqrt(kind ? 0.25 * variance : variance);
-    double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, SEEDS, 5, ishigami, shared, own);
+    double *value = evaluate(3, BASE, SEEDS, 5, ishigami, shared, own);
     struct sensitivity_index index[4];
     const struct sensitivity_table table = {3, BASE, SEEDS, value, kind, NULL};
     assert_int_equal(sensitivity_sobol(&table, index, NULL), STATUS_OK);
@@ -182,7 +182,7 @@ static void coverage(void **state) {
       for (size_t b = 0; b < base; b++)
         group[b] = design_sensitivity_group(base, b);
       for (int c = 0; c < cases; c++) {
-        double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, INPUTS, base, 2, 100 + (uint64_t)c, law[l].f, 0, 0);
+        double *value = evaluate(INPUTS, base, 2, 100 + (uint64_t)c, law[l].f, 0, 0);
         struct sensitivity_index index[INPUTS + 1];
         const struct sensitivity_table table = {INPUTS, base, 2, value, true, group};
         assert_int_equal(sensitivity_sobol(&table, index, NULL), STATUS_OK);
@@ -212,8 +212,7 @@ static void one_seed_has_no_totals(void **state) {
   (void)state;
   enum { BASE = 256, SEEDS = 4 };
   for (int seeds = 1; seeds <= SEEDS; seeds += SEEDS - 1) {
-    double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, (size_t)seeds, 7, ishigami, 0,
-                             sqrt(ishigami_variance));
+    double *value = evaluate(3, BASE, (size_t)seeds, 7, ishigami, 0, sqrt(ishigami_variance));
     struct sensitivity_index index[4];
     const struct sensitivity_table table = {3, BASE, (size_t)seeds, value, false, NULL};
     assert_int_equal(sensitivity_sobol(&table, index, NULL), STATUS_OK);
@@ -244,8 +243,7 @@ static void few_shared_seeds(void **state) {
   for (size_t seeds = 2; seeds <= 4; seeds += 2) {
     int held[2][INPUTS + 1] = {{0}};
     for (uint64_t c = 0; c < CASES; c++) {
-      double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, INPUTS, BASE, seeds, 100 + c, smooth, sqrt(alike),
-                               sqrt(own));
+      double *value = evaluate(INPUTS, BASE, seeds, 100 + c, smooth, sqrt(alike), sqrt(own));
       struct sensitivity_index index[INPUTS + 1];
       const struct sensitivity_table table = {INPUTS, BASE, seeds, value, true, group};
       assert_int_equal(sensitivity_sobol(&table, index, NULL), STATUS_OK);
@@ -262,83 +260,12 @@ static void few_shared_seeds(void **state) {
   }
 }
 
-static double plane(size_t n, const double *u) {
-  (void)n;
-  return 3 * u[0] - 0.5 * u[1] + 4 * u[2] * u[3];
-}
-
-/* Morris: the input that each step of each trajectory changes, and the change of its coordinate. */
-static void steps_of(const struct design_sensitivity *design, size_t inputs, size_t blocks, size_t *order,
-                     double *step) {
-  double u[2][MOST];
-  for (size_t b = 0; b < blocks; b++)
-    for (size_t k = 0; k < inputs; k++) {
-      size_t changed = 0;
-      for (size_t i = 0; i < 2; i++)
-        design_sensitivity_row(design, b * (inputs + 1) + k + i, u[i]);
-      for (size_t d = 0; d < inputs; d++)
-        if (u[1][d] != u[0][d]) {
-          order[b * inputs + k] = d;
-          step[b * inputs + k] = u[1][d] - u[0][d];
-          changed++;
-        }
-      assert_int_equal(changed, 1);
-    }
-}
-
-static void elementary_effects(void **state) {
-  (void)state;
-  enum { BLOCKS = 40, INPUTS = 4, SEEDS = 4 };
-  struct design_sensitivity *design;
-  struct sensitivity_effect effect[INPUTS];
-  size_t order[BLOCKS * INPUTS];
-  double step[BLOCKS * INPUTS];
-  for (int noisy = 0; noisy < 2; noisy++) {
-    double *value = evaluate(DESIGN_SENSITIVITY_MORRIS, INPUTS, BLOCKS, noisy ? SEEDS : 1, 3, plane, 0,
-                             noisy ? 0.1 : 0);
-    assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_MORRIS, INPUTS, BLOCKS, 3, &design, NULL), STATUS_OK);
-    steps_of(design, INPUTS, BLOCKS, order, step);
-    design_sensitivity_free(design);
-    const struct sensitivity_table table = {INPUTS, BLOCKS, noisy ? SEEDS : 1, value, false, NULL};
-    assert_int_equal(sensitivity_morris(&table, order, step, effect, NULL), STATUS_OK);
-    const double tolerance = noisy ? 0.1 : 1e-12;
-    assert_true(fabs(effect[0].mean_absolute.estimate - 3) < tolerance && fabs(effect[0].mean - 3) < tolerance);
-    assert_true(fabs(effect[1].mean_absolute.estimate - 0.5) < tolerance && fabs(effect[1].mean + 0.5) < tolerance);
-    assert_true(noisy || effect[1].deviation < 1e-12);
-    /* 4 u: its mean is 2, and it varies with the other one */
-    assert_true(fabs(effect[2].mean_absolute.estimate - 2) < 3 * effect[2].mean_absolute.half_width);
-    assert_true(effect[2].deviation > 0.8);
-    if (noisy) /* own noise of 0.1 in both ends, 4 seeds, steps of a half: 0.1 sqrt(2) / 2 / 0.5 sqrt(2/pi) = 0.113 */
-      assert_true(fabs(effect[0].noise - 0.113) < 0.03);
-    else
-      assert_true(isnan(effect[0].noise));
-    free(value);
-  }
-}
-
-/* Two trajectories of two inputs, the second in the other order and downwards: effects 6 and 2 of the first input, -4
- * and -8 of the second. One trajectory is refused: it has no scatter. */
-static void effects_by_hand(void **state) {
-  (void)state;
-  static const double value[] = {1, 4, 2, 5, 9, 8}, step[] = {0.5, 0.5, -0.5, -0.5};
-  static const size_t order[] = {0, 1, 1, 0};
-  struct sensitivity_effect effect[2];
-  struct sensitivity_table table = {2, 2, 1, value, true, NULL};
-  assert_int_equal(sensitivity_morris(&table, order, step, effect, NULL), STATUS_OK);
-  assert_true(effect[0].mean == 4 && effect[0].mean_absolute.estimate == 4);
-  assert_true(effect[1].mean == -6 && effect[1].mean_absolute.estimate == 6);
-  assert_true(fabs(effect[0].deviation - sqrt(8)) < 1e-12 && fabs(effect[1].deviation - sqrt(8)) < 1e-12);
-  table.blocks = 1;
-  assert_int_equal(sensitivity_morris(&table, order, step, effect, NULL), STATUS_USAGE);
-}
-
-/* A block of Saltelli: A, B, and A with one input of B. A trajectory of Morris changes one input after another, each
- * once. */
+/* A block: A, B, and A with one input of B. */
 static void designs(void **state) {
   (void)state;
   struct design_sensitivity *design;
   double u[5][MOST];
-  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_SALTELLI, 3, 16, 1, &design, NULL), STATUS_OK);
+  assert_int_equal(design_sensitivity_create(3, 16, 1, &design, NULL), STATUS_OK);
   assert_int_equal(design_sensitivity_rows(design), 80);
   for (size_t b = 0; b < 16; b++) {
     for (size_t k = 0; k < 5; k++)
@@ -348,23 +275,9 @@ static void designs(void **state) {
         assert_true(u[2 + i][d] == (i == d ? u[1][d] : u[0][d]) && u[0][d] != u[1][d]);
   }
   design_sensitivity_free(design);
-  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_MORRIS, 4, 9, 1, &design, NULL), STATUS_OK);
-  assert_int_equal(design_sensitivity_rows(design), 45);
-  size_t order[36];
-  double step[36];
-  steps_of(design, 4, 9, order, step);
-  for (size_t b = 0; b < 9; b++) {
-    unsigned changed = 0;
-    for (size_t k = 0; k < 4; k++) {
-      assert_true(fabs(step[4 * b + k]) == 0.5);
-      changed |= 1u << order[4 * b + k];
-    }
-    assert_int_equal(changed, 15);
-  }
-  design_sensitivity_free(design);
   struct error error;
-  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_SALTELLI, 21, 4, 1, &design, &error), STATUS_CONTENT);
-  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_SALTELLI, 0, 4, 1, &design, &error), STATUS_CONTENT);
+  assert_int_equal(design_sensitivity_create(21, 4, 1, &design, &error), STATUS_CONTENT);
+  assert_int_equal(design_sensitivity_create(0, 4, 1, &design, &error), STATUS_CONTENT);
 }
 
 int main(void) {
@@ -376,8 +289,6 @@ int main(void) {
                                      cmocka_unit_test(indices_by_hand),
                                      cmocka_unit_test(coverage),
                                      cmocka_unit_test(one_seed_has_no_totals),
-                                     cmocka_unit_test(few_shared_seeds),
-                                     cmocka_unit_test(elementary_effects),
-                                     cmocka_unit_test(effects_by_hand)};
+                                     cmocka_unit_test(few_shared_seeds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

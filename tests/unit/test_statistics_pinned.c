@@ -361,14 +361,6 @@ static void of_inputs(void) {
         for (size_t i = 0; i <= INPUTS; i++)
           SAY("index", index[i].first.estimate, index[i].first.half_width, index[i].total.estimate,
               index[i].total.standard_error, index[i].total.half_width);
-      const size_t order[4 * INPUTS] = {0, 1, 1, 0, 0, 1, 1, 0};
-      const double step[4 * INPUTS] = {0.5, -0.5, 0.25, 0.5, -0.5, 0.5, 0.5, -0.25};
-      struct sensitivity_effect effect[INPUTS];
-      const struct sensitivity_table few = {INPUTS, 4, seeds, value, same, NULL};
-      if (sensitivity_morris(&few, order, step, effect, NULL) == STATUS_OK)
-        for (size_t i = 0; i < INPUTS; i++)
-          SAY("effect", effect[i].mean_absolute.estimate, effect[i].mean_absolute.half_width, effect[i].mean,
-              effect[i].deviation, effect[i].noise);
     }
 }
 
