@@ -51,7 +51,7 @@ static const struct field rows[] = {
         .label = "mass share of the second largest fragment M₂/M",
         .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
     REAL(mean_fragment_mass, "kg", 0, .main_rank = 5, .label = "mean fragment mass (second over first moment)",
-         .doc = "Sum of the squared fragment masses over the sum of the masses (not M_2/M_1)."),
+         .doc = "Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m."),
     REAL(mean_fragment_mass_rest, "kg", 0, .label = "mean fragment mass without the largest",
          .doc = "The same without the largest fragment."),
     REAL(kinetic_energy_share, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,

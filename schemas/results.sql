@@ -104,7 +104,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   complete_mass REAL, -- [kg] The spectrum of fragments is complete from this mass on: 10 particles (sph: 9.5 of the heaviest) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
   largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).
   second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
-  mean_fragment_mass REAL, -- [kg] Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).
+  mean_fragment_mass REAL, -- [kg] Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.
   mean_fragment_mass_rest REAL, -- [kg] The same without the largest fragment.
   kinetic_energy_share REAL -- [1] Translation energy of the fragments over the energy put in.
 ) STRICT;
@@ -1161,23 +1161,23 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard e
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_weak', '1', '1: too few runs of this kind for the interval of this share: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_high95', 'kg', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_high95', 'kg', 'upper end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_low95', 'kg', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_low95', 'kg', 'lower end of this interval; of a share also when all runs are equal to 14 digits: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, no-difference, at-least, diverges, or not-studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, no-difference, at-least, diverges, or not-studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_weak', 'kg', '1: too few runs of this kind for the interval of this share: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_weak', 'kg', '1: too few runs of this kind for the interval of this share: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded', 0);
 
@@ -1469,7 +1469,7 @@ INSERT INTO column_doc VALUES ('run', 'kinetic_energy_share', '1', 'Translation 
 
 INSERT INTO column_doc VALUES ('run', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 1);
 
-INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 1);
+INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass_rest', 'kg', 'The same without the largest fragment.', 1);
 
@@ -1665,7 +1665,7 @@ INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage D of the
 
 INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass_rest', 'kg', 'The same without the largest fragment.', 0);
 

@@ -12,7 +12,7 @@ enum { COLUMNS = 100 };
 status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
                                 struct measured *measured, struct error *error) {
   struct spectrum_size size = {.density = choice->density};
-  const status code = ask_pool_dimensions(store, &size.dimensions, error);
+  const status code = ask_pool_dimensions(store, &choice->pool, &size.dimensions, error);
   choice->measured = measured;
   return code ? code : measured_read(path, &size, measured, error);
 }
@@ -249,7 +249,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   const struct spectrum_choice *choice = curves->choice;
   const struct measured *measured = choice->measured;
   int dimensions;
-  TRY(ask_pool_dimensions(store, &dimensions, error));
+  TRY(ask_pool_dimensions(store, &choice->pool, &dimensions, error));
   const bool sizes = choice->density > 0;
   struct picture_series series[PICTURE_SERIES];
   OWNED struct pooled_bin *bins = NULL;

@@ -52,12 +52,11 @@ static status print_pool(struct table *table, const struct options *options, boo
     fit.fit.beta = NAN;
   const double any = 1; /* a density: the exponents by size do not depend on it */
   seen->flat |= fit.fit.beta <= 1;
-  const int dimensions = pool->data.dimensions ? pool->data.dimensions : (int)options->dimensions;
-  seen->unsized |= dimensions == 0;
+  const bool unsized = pool->data.dimensions == 0;
+  seen->unsized |= unsized;
   for (int form = 0; form < 4; form++) {
-    struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
-    named.size.dimensions = dimensions;
-    const bool none = (people && form % 2 && fit.fit.beta <= 1) || (form / 2 && dimensions == 0);
+    const struct pooled_form named = ask_pool_form(pool, form % 2, form / 2 ? any : 0);
+    const bool none = (people && form % 2 && fit.fit.beta <= 1) || (form / 2 && unsized);
     table_rests_on(table, &pool->doubts);
     table_fixed(table, none ? (double)NAN : pooled_spectrum_exponent(&named, fit.fit.beta),
                 people ? pooled_exponent_decimals(&fit) : 2);
@@ -79,7 +78,8 @@ static status ask(struct store *store, const struct command_line *line, struct e
   const struct options *options = line->options;
   char kg[64]; /* none with runs of the plane and of space */
   TRY(ask_columns_unit(store, OUTCOME_NAME(mean_fragment_mass), kg, sizeof kg, error));
-  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){.inputs = true}, NULL, error);
+  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){.inputs = true, .dimensions = (int)options->dimensions},
+                              NULL, error);
   TABLE table = table_new(line->format, stdout);
   print_pool_columns(table, &pools);
   table_column(table, "from", kg);

@@ -4,6 +4,7 @@
 
 struct options {
   const char *by, *size, *with, *picture;
+  int64_t dimensions;
   bool cumulative, runs, ejecta, plot, ascii;
   struct chart_options chart;
 };
@@ -31,7 +32,7 @@ static status check(const struct command_line *line, struct error *error) {
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct spectrum_choice choice = {.pool = {.by = options->by},
+  struct spectrum_choice choice = {.pool = {.by = options->by, .dimensions = (int)options->dimensions},
                                    .cumulative = options->cumulative,
                                    .runs = options->runs};
   __attribute__((cleanup(measured_release))) struct measured measured = {0};
@@ -39,6 +40,13 @@ static status ask(struct store *store, const struct command_line *line, struct e
   if (options->size && (unit_read_whole(options->size, "kg/m^3", &choice.density, &why) || !(choice.density > 0)))
     return status_fail(error, STATUS_USAGE, "--size is a density such as '2700 kg/m^3', not '%s': %s", options->size,
                        why.message);
+  int dimensions = 0;
+  if (options->size || options->dimensions)
+    TRY(ask_pool_dimensions(store, &choice.pool, &dimensions, error));
+  if (options->size && dimensions == 0)
+    return status_fail(error, STATUS_USAGE,
+                       "sizes follow from masses in 2 or 3 dimensions, and clast does not know those of a program's "
+                       "model: add --dimensions 2 or --dimensions 3");
   if (options->with)
     TRY(spectrum_curves_measured(store, options->with, &choice, &measured, error));
   TRY(print(store, options, &choice, line->format, error));
@@ -52,6 +60,7 @@ static const struct option_row option_rows[] = {
     COMMANDS_BY(struct options, by),
     OPTION_ROW_FLAG("cumulative", 'c', struct options, cumulative),
     OPTION_ROW_TEXT("size", 0, "DENSITY", struct options, size, NULL),
+    OPTION_ROW_INTEGER("dimensions", 0, "D", struct options, dimensions, 2, 3, 0),
     OPTION_ROW_FLAG("runs", 0, struct options, runs),
     OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),

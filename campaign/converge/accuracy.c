@@ -394,8 +394,8 @@ static status is_marked(struct finding *finding, const struct knob *knob, const 
 
 static void note_marked(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
   struct accuracy *accuracy = finding->accuracy;
-  char setting[160];
-  study_show_setting(finding->campaign->scene->kind, knob, row->setting, setting, sizeof setting);
+  char setting[STUDY_SETTING];
+  study_show_setting(finding->campaign->scene->kind, knob, row->setting, setting);
   text_append(accuracy->marked, sizeof accuracy->marked, "%s%s = %s (%s)", *accuracy->marked ? "; " : "", row->knob,
               setting, finding->marks);
 }
@@ -815,8 +815,8 @@ static void advise_seeds(const struct accuracy *accuracy, const struct campaign 
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
 static void name_option(const struct campaign *campaign, const struct accuracy_option *option, char *text,
                         size_t size) {
-  char setting[160];
-  study_show_setting(campaign->scene->kind, knob_of(campaign, option->knob), option->setting, setting, sizeof setting);
+  char setting[STUDY_SETTING];
+  study_show_setting(campaign->scene->kind, knob_of(campaign, option->knob), option->setting, setting);
   if (option->own)
     snprintf(text, size, "the scene's own settings");
   else
@@ -950,9 +950,9 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   table_column(table, "run_cost", NULL);
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
-    char setting[160], text[UNCERTAINTY_TEXT];
+    char setting[STUDY_SETTING], text[UNCERTAINTY_TEXT];
     const struct knob *knob = people ? knob_of(campaign, option->knob) : NULL;
-    study_show_setting(campaign->scene->kind, knob, option->setting, setting, sizeof setting);
+    study_show_setting(campaign->scene->kind, knob, option->setting, setting);
     table_text(table, i == accuracy->chosen ? "chosen" : "");
     table_text(table, option->own ? "" : option->knob);
     table_text(table, option->own ? "the scene's own" : setting);

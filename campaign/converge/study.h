@@ -115,9 +115,11 @@ bool study_is_campaign(const char *path);
 
 /* ---- study_print.c ---- */
 
-/* A setting of a knob with the digits and the unit that people need. knob NULL, or not a number: as it is. */
-void study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting, char *text,
-                        size_t size);
+enum { STUDY_SETTING = 160 };
+/* A setting of a knob with the digits and the unit that people need. knob NULL, or not a number: as it is. Returns
+ * text. */
+char *study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting,
+                         char text[STUDY_SETTING]);
 /* The error of a setting as on every screen: "0.061", or ">= 0.061" when it is no bound. Returns text. */
 const char *study_show_error(double error, bool at_least, char text[UNCERTAINTY_TEXT]);
 /* The table of knobs of every engine. */

@@ -94,18 +94,25 @@ static status sum_doubts(const struct printing *printing, size_t ladders, size_t
   return doubts_of(printing, points, names, sum, error);
 }
 
-void study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting, char *text,
-                        size_t size) {
+char *study_show_setting(const struct engine_kind *kind, const struct knob *knob, const char *setting,
+                         char text[STUDY_SETTING]) {
   char *end, unit[64];
   const double number = strtod(setting, &end);
   const char *path = knob ? knob->inputs[0].path : NULL;
   const struct field *row = path ? field_find(kind->inputs, path, NULL) : NULL;
   if (*end || end == setting || !row) {
-    snprintf(text, size, "%.64s", setting);
-    return;
+    snprintf(text, STUDY_SETTING, "%.64s", setting);
+    return text;
   }
   field_label_unit(row->unit, unit, sizeof unit);
-  snprintf(text, size, number >= 1e6 ? "%.0f%s%s" : "%.6g%s%s", number, *unit ? " " : "", unit);
+  snprintf(text, STUDY_SETTING, number >= 1e6 ? "%.0f%s%s" : "%.6g%s%s", number, *unit ? " " : "", unit);
+  return text;
+}
+
+/* The setting of a level of a ladder. */
+static char *show_level(const struct study_ladder *ladder, const struct convergence_row *row,
+                        char text[STUDY_SETTING]) {
+  return study_show_setting(ladder->base->kind, ladder->levels.knob, row->setting, text);
 }
 
 /* The rows of a quantity, for print. */
@@ -138,12 +145,12 @@ static struct sample_summary summary_of(const struct study *study, const struct 
 
 static void print_level(struct table *table, const struct study_ladder *ladder, const struct convergence_row *row,
                         bool weak, const struct ask_doubts *doubts) {
-  char setting[160], text[UNCERTAINTY_TEXT];
+  char setting[STUDY_SETTING], text[UNCERTAINTY_TEXT];
   /* Of runs that differ in their last bits only. */
   const bool rounding = fabs(row->bias) < 1e-12 * fabs(row->mean) && row->bias_half_width < 1e-12 * fabs(row->mean);
   if (row->n == 0 && !(row->base && isfinite(row->error)))
     return; /* left out by the budget, or every run failed: print_limit names it */
-  study_show_setting(ladder->base->kind, ladder->levels.knob, row->setting, setting, sizeof setting);
+  show_level(ladder, row, setting);
   text_append(setting, sizeof setting, "%s%s", row->base ? " *" : "", row->reference ? " ref" : "");
   table_text(table, row->knob);
   table_text(table, setting);
@@ -244,13 +251,13 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
     return;
   const struct study_ladder *ladder = &study->ladder[from + knob];
   const struct convergence_row *told = &found[knob].rows[level];
-  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT];
+  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT], setting[STUDY_SETTING];
   charts_label(study->quantity[quantity].name, label);
   const struct sample_range range = sample_range(study->quantity[quantity].row);
   const struct sample_summary mean = summary_of(study, ladder, level, quantity);
   uncertainty_seeds(&mean, text);
   if (!told->base)
-    fprintf(out, "%s = %s: ", told->knob, told->setting);
+    fprintf(out, "%s = %s: ", told->knob, show_level(ladder, told, setting));
   fprintf(out, "%s = %s.", label, text);
   if (isfinite(told->error))
     fprintf(out, " Error of the resolution: %s", study_show_error(told->error, told->at_least, text));
@@ -299,14 +306,16 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
 
 /* The limit with the scatter of the seeds in its interval. The distance of the scene's own level is known far better:
  * equal seeds have the same scatter at all levels. */
-static void print_seen(const struct convergence_limit_row *limit, const struct study_found *found, FILE *out) {
+static void print_seen(const struct study_ladder *ladder, const struct study_found *found, FILE *out) {
+  const struct convergence_limit_row *limit = &found->limit;
+  char setting[STUDY_SETTING], text[UNCERTAINTY_TEXT];
   fprintf(out, "limit %.5g (%.5g to %.5g, seeds included), mean over laws of order %.2g to %.2g (best: %.2g); ",
           limit->limit.value, limit->limit.low, limit->limit.high, limit->order.low, limit->order.high,
           limit->order.value);
-  char text[UNCERTAINTY_TEXT];
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].base && found->rows[l].resolution > 0 && !found->rows[l].open)
-      fprintf(out, "%s * is at most %s from its limit, equal seeds compared; ", found->rows[l].setting,
+      fprintf(out, "%s * is at most %s from its limit, equal seeds compared; ",
+              show_level(ladder, &found->rows[l], setting),
               study_show_error(found->rows[l].resolution, found->rows[l].open, text));
 }
 
@@ -332,27 +341,28 @@ static status print_missing(const struct printing *printing, const struct study_
                             const struct study_found *found, FILE *out, struct error *error) {
   struct ask_doubts here, all = {0};
   char ran[KNOB_LEVELS * 200] = "", words[256] = "";
-  char late[sizeof ran] = "", lone[sizeof ran] = "";
+  char late[sizeof ran] = "", lone[sizeof ran] = "", setting[STUDY_SETTING];
   for (size_t l = 0; l < found->count; l++) {
     const struct convergence_row *row = &found->rows[l];
     const bool by_law = row->base && !row->open && found->limit.verdict == LIMIT_SEEN;
     const char *own = by_law ? " *, whose error follows from the law" : row->base ? " *" : "";
     if (row->n > 0)
       continue;
+    show_level(ladder, row, setting);
     if (ladder->seeds == 0 && has_result(printing->study, ladder, l, quantity)) {
-      text_append(lone, sizeof lone, "%s %s%s", *lone ? "," : "", row->setting, own);
+      text_append(lone, sizeof lone, "%s %s%s", *lone ? "," : "", setting, own);
       continue;
     }
     if (was_run(printing->study, ladder, l) && !ladder->left_out[l]) {
       TRY(read_doubts(printing, ladder, l, quantity, &here, error));
-      text_append(ran, sizeof ran, "%s %s%s", *ran ? "," : "", row->setting, own);
+      text_append(ran, sizeof ran, "%s %s%s", *ran ? "," : "", setting, own);
       ask_doubts_add(&all, &here);
       continue;
     }
     if (ladder->levels.level[l].unasked)
-      fprintf(out, "; without %s%s", row->setting, own);
+      fprintf(out, "; without %s%s", setting, own);
     else
-      text_append(late, sizeof late, "%s %s%s", *late ? "," : "; there was no time for", row->setting, own);
+      text_append(late, sizeof late, "%s %s%s", *late ? "," : "; there was no time for", setting, own);
   }
   fputs(late, out);
   for (size_t k = 0; k < all.count; k++)
@@ -373,10 +383,11 @@ static status print_limit(const struct printing *printing, const struct study_la
                           const struct study_found *found, FILE *out, struct error *error) {
   const struct convergence_limit_row *limit = &found->limit;
   const struct knob *knob = ladder->levels.knob;
+  char setting[STUDY_SETTING];
   const char *before = "";
   fprintf(out, "%s: ", limit->knob);
   if (limit->verdict == LIMIT_SEEN)
-    print_seen(limit, found, out);
+    print_seen(ladder, found, out);
   else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING) {
     print_change(knob, found, out);
     fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
@@ -394,7 +405,7 @@ static status print_limit(const struct printing *printing, const struct study_la
   int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
   for (size_t l = 0; l < found->count && dropped > 0; l++)
     if (found->rows[l].n > 0) {
-      fprintf(out, "%s%s", *before ? ", " : "the law leaves out ", found->rows[l].setting);
+      fprintf(out, "%s%s", *before ? ", " : "the law leaves out ", show_level(ladder, &found->rows[l], setting));
       before = ",";
       dropped--;
     }

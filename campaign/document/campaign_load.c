@@ -7,6 +7,7 @@
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/document/campaign_read.h"
+#include "db/ask/ask.h"
 #include "engine/random.h"
 #include "schemas/memory.h"
 #include "schemas/rows.h"
@@ -149,7 +150,9 @@ const char *campaign_unit(const struct campaign *campaign, const char *quantity,
   struct error ignored;
   bool of_outcome;
   const struct field *row = campaign_quantity(campaign->scene->kind, quantity, &of_outcome, &ignored);
-  const char *unit = row ? field_shown_unit(row) : "";
+  struct field shown = row ? *row : (struct field){0};
+  shown.unit = ask_result_unit(&shown, campaign->scene->kind->dimensions);
+  const char *unit = field_shown_unit(&shown);
   snprintf(text, CAMPAIGN_UNIT, "%s%s", *unit ? " " : "", unit);
   return text;
 }

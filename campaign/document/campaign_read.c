@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/statistics/statistics.h"
+#include "db/ask/ask.h"
 #include "db/store/store.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
@@ -274,7 +275,7 @@ static void check_width(document_node *width, const char *path, const char *quan
       field_parse(&any_unit, text, &ignored, &error) != STATUS_OK)
     return;
   const struct field in_unit = {.path = path,
-                                .unit = row->unit ? row->unit : "1",
+                                .unit = row->unit ? ask_result_unit(row, campaign->scene->kind->dimensions) : "1",
                                 .minimum = -HUGE_VAL,
                                 .maximum = HUGE_VAL};
   document_value(width, &in_unit, &ignored);

@@ -120,7 +120,7 @@ static void read_datum(struct reading *r, document_node *node) {
   const bool above = datum->ask.kind == ASK_SPECIMENS_COUNT || datum->ask.kind == ASK_SPECIMENS_SHARE;
   const struct field *row = datum->ask.row;
   for (int k = VALUE; row && row->unit && k <= RESOLUTION; k++)
-    rows[k].unit = row->unit;
+    rows[k].unit = ask_result_unit(row, r->campaign->scene->kind->dimensions);
   const struct field_table table = FIELD_TABLE(rows, struct observed_datum, "measured", "One number of one shot.");
   document_read(node, &table, NULL, datum);
   datum->ask.share = datum->share;

@@ -187,7 +187,7 @@ static status print_rows(const struct fit *fit, enum table_format format, struct
     observed_label(fit->observed, k, label, sizeof label);
     table_text(table, "measured");
     table_text(table, label);
-    table_text(table, row ? row->unit : "1");
+    table_text(table, row ? ask_result_unit(row, fit->campaign->scene->kind->dimensions) : "1");
     skip(table, 2);
     for (int q = 0; q < 3; q++)
       table_real(table, predicted(fit, k, levels[2 * q]));

@@ -393,7 +393,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
   double heaviest = 0, body[2] = {HUGE_VAL, 0}, given = 0; /* kg; lightest and heaviest body of a row */
   size_t judged[2] = {SIZE_MAX, 0};                        /* runs with a shape: fewest and most */
   int dimensions;
-  TRY(ask_pool_dimensions(store, &dimensions, error));
+  TRY(ask_pool_dimensions(store, &choice->pool, &dimensions, error));
   const char *kg = ask_pool_mass_unit(dimensions);
   ASK_POOLS before = ask_pools(store, &choice->pool, NULL, error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&before));)

@@ -98,16 +98,17 @@ struct scene *serve_model_scene(const struct serve_model *model, const double *i
   return campaign_point_scene_from(base, campaign, values, error);
 }
 
-static json_t *describe_row(const struct field *row) {
-  return json_pack("{s:s, s:s, s:s}", "name", row->path, "unit", row->unit ? row->unit : "1", "meaning", row->doc);
+static json_t *describe_row(const struct field *row, int dimensions) {
+  const char *unit = row->unit ? ask_result_unit(row, dimensions) : "1";
+  return json_pack("{s:s, s:s, s:s}", "name", row->path, "unit", unit, "meaning", row->doc);
 }
 
 char *serve_model_describe(const struct serve_model *model) {
   json_t *inputs = json_array(), *results = json_array(), *levels = json_array();
   for (size_t i = 0; i < model->input_count; i++)
-    json_array_append_new(inputs, describe_row(model->campaign->axes[model->inputs[i]].row));
+    json_array_append_new(inputs, describe_row(model->campaign->axes[model->inputs[i]].row, 3));
   for (size_t i = 0; i < model->result_count; i++)
-    json_array_append_new(results, describe_row(model->results[i].row));
+    json_array_append_new(results, describe_row(model->results[i].row, model->campaign->scene->kind->dimensions));
   for (size_t i = 0; i < model->ladder.count; i++)
     json_array_append_new(levels, json_string(model->ladder.level[i].setting));
   json_auto_t *whole = json_pack("{s:s, s:s, s:o, s:o, s:s?, s:o}", "model", model->campaign->name, "scene",

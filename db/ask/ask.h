@@ -573,6 +573,7 @@ struct ask_pool_choice {
   const char *by; /* comma-separated varied inputs (see ask_group): points that share them are one pool; NULL: a pool
                      per point */
   bool inputs;    /* without `by`: the pools' columns are all varied inputs */
+  int dimensions; /* of a program's model, which only the user knows: 2, 3, or 0: not told */
 };
 
 enum { ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
@@ -618,8 +619,9 @@ const struct ask_pool *ask_pools_next(struct ask_pools *pools);
 status ask_pools_end(struct ask_pools *pools);
 
 /* Dimensions of the engine of the chosen runs, 2, 3, or 0 (not known): masses of 2 are kg per metre. STATUS_USAGE: some
- * are in the plane, and others not. */
-status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
+ * are in the plane, and others not, or the choice tells others than the engine has. */
+status ask_pool_dimensions(struct store *store, const struct ask_pool_choice *choice, int *dimensions,
+                           struct error *error);
 const char *ask_pool_mass_unit(int dimensions);     /* "kg/m", "kg" */
 const char *ask_pool_per_mass_unit(int dimensions); /* "m/kg", "1/kg" */
 /* The row's unit, masses as above. NULL: none. */

@@ -167,6 +167,8 @@ static status read_next(struct ask_pools *pools, struct error *error) {
 const struct ask_pool *ask_pools_next(struct ask_pools *pools) {
   while (pools->code == STATUS_OK && pools->next < pools->count) {
     pools->code = read_next(pools, pools->error);
+    if (pools->pool.data.dimensions == 0)
+      pools->pool.data.dimensions = pools->choice.dimensions;
     if (pools->code == STATUS_OK && pools->pool.points > 0)
       return &pools->pool;
   }
@@ -208,7 +210,8 @@ struct ask_pools ask_pools(struct store *store, const struct ask_pool_choice *ch
   return pools;
 }
 
-status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error) {
+status ask_pool_dimensions(struct store *store, const struct ask_pool_choice *choice, int *dimensions,
+                           struct error *error) {
   bool plane = false, other = false;
   ANSWER answer = answer_to(store, error,
                             "SELECT DISTINCT engine FROM point WHERE point_id IN (SELECT point_id FROM run)");
@@ -224,7 +227,12 @@ status ask_pool_dimensions(struct store *store, int *dimensions, struct error *e
         "the store has runs of several engines, some in the plane, with masses in kg/m, and some with masses "
         "in kg: their spectra have no common axis. Choose runs of one kind with --campaign, --point or "
         "--where");
-  return answer_end(&answer);
+  TRY(answer_end(&answer));
+  if (choice->dimensions && *dimensions && choice->dimensions != *dimensions)
+    return status_fail(error, STATUS_USAGE, "--dimensions %d: the runs have %d dimensions; leave the option out",
+                       choice->dimensions, *dimensions);
+  *dimensions = *dimensions ? *dimensions : choice->dimensions;
+  return STATUS_OK;
 }
 
 const char *ask_pool_mass_unit(int dimensions) {

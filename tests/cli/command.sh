@@ -164,6 +164,12 @@ for d in 2 3; do
   expect 0 "$clast" exponents grains.db --draws 100 --csv --dimensions $d
   same "$(awk -F , -v d=$d 'NR == 2 {print ($10 - d * ($6 - 1)) ^ 2 < 1e-4}' out)" 1 "exponent by size in $d dimensions"
 done
+expect 64 "$clast" spectrum grains.db --size '2700 kg/m^3'
+says "add --dimensions 2 or --dimensions 3"
+for d in 2 3; do # the lightest, of 0.1 kg: a disc of L^2 = 4 m / (pi density), a sphere of L^3 = 6 m / (pi density)
+  expect 0 "$clast" spectrum grains.db --size '1000 kg/m^3' --dimensions $d --csv
+  same "$(awk -F , -v d=$d 'NR == 2 {print ($2 ^ d / (2 * d * 0.1 / (1000 * atan2(0, -1))) - 1) ^ 2 < 1e-12}' out)" 1 "size in $d dimensions"
+done
 # A power law that ends at 20 kg: windows that end at the largest fragment hide it.
 scene ends 'fragments: {name: m, unit: kg}' <<'SH'
 awk 'BEGIN { for (i = 0.5; i < 2000; i++) m = m sprintf(", %.17g", 1 / (i / 2000 + 0.05)); print "{\"x\": 1, \"m\": [" substr(m, 2) ", 19, 19.2, 19.4, 19.6]}" }'
@@ -454,4 +460,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 178
+done_after 183

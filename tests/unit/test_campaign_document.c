@@ -105,6 +105,10 @@ static void defaults_and_units(void **state) {
   bad("name: t\nscene: compression\naccuracy: {within: 5}\n", "accuracy.within");
   once("name: t\nscene: compression\naccuracy: {within: 5 Mpa}\n", "unknown unit 'Mpa'");
   bad("name: t\nscene: compression\nseeds: {until: {half_width: 17 m}}\n", "expected a pressure");
+  /* Masses of the plane. */
+  bad("name: t\nscene: disc-explosion\nseeds: {until: {quantity: mean_fragment_mass, half_width: 1 kg}}\n", "kg/m");
+  campaign_free(good("name: t\nscene: disc-explosion\n"
+                     "seeds: {until: {quantity: mean_fragment_mass, half_width: 1 kg/m}}\n"));
   bad(HEAD "accuracy: {within: 17 MPa}\n", "accuracy.within: expected a plain number");
   campaign = good(HEAD "seeds: 4\n");
   assert_int_equal(campaign_replicates_least(campaign), 4);
