@@ -392,7 +392,7 @@ cell = ("" if errors[own][1] == "known" else ">= ") + "%.2g" % errors[own][0]
 for screen, line in (("table", r"grains +0.01069 m \*"), ("plan", "the scene's own"), ("estimates", r"(^| )%d  +\d+  +\d\.\d+ (±|≥|\()" % own)):
     (line,) = [found for found in open(screen) if re.search(line, found)]
     assert re.search("(^| )" + re.escape(cell) + "( |$)", line.rstrip()), (screen, line, cell)
-sentence = re.search(r"^grains = (\S+): .* Error of the resolution: (\S+) ", " ".join(open("table").read().split()))
+sentence = re.search(r"^grains = (\S+) m: .* Error of the resolution: (\S+) ", " ".join(open("table").read().split()))
 assert sentence[2] == "%.2g" % errors[point["grains", sentence[1]]][0], (sentence, errors)  # of the finest level
 PY
 ok "one setting, one error"
@@ -462,12 +462,12 @@ says "too short for"; one_error
 # The scene's own level takes minutes, the coarser ones 20 ms: they are studied, and the law tells its error.
 expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --set grain.spacing='0.06 cm' --seconds 20 \
   --knob grains=3cm,2.2cm,1.6cm,0.06cm --max-seeds 8 --store slow.db -j 1
-tr "\n" " " <out | grep -qF "there was no time for 0.0006 *, whose error" || fail "why the own level is missing: $(cat out)"
+tr "\n" " " <out | grep -qF "there was no time for 0.0006 m *, whose error" || fail "why the own level is missing: $(cat out)"
 same "$(number slow.db "select min(n) from convergence where n > 0")" 8 "seeds of the coarser levels"
 # A level that does not fit into the time has one reason, also where the others end for another one.
 expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --seconds 20 \
   --knob grains=3cm,2.2cm,1.6cm,0.06cm --seeds 8 --within off --store slow.db -j 1
-tr '\n' ' ' <out | grep -q 'ended: one round was asked for; without [0-9.]* \*.*; there was no time for 0.0006' || fail "why a level is missing: $(cat out)"
+tr '\n' ' ' <out | grep -q 'ended: one round was asked for; without [0-9.]* m \*.*; there was no time for 0.0006 m' || fail "why a level is missing: $(cat out)"
 
 # The own level of a knob without time has the results of another knob, or of a campaign: it is no failed one.
 expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --set stop.end_time='1 ms' --knob grains=1.069cm,0.06cm \
