@@ -472,14 +472,14 @@ tr '\n' ' ' <out | grep -q 'ended: one round was asked for; without [0-9.]* m \*
 # The own level of a knob without time has the results of another knob, or of a campaign: it is no failed one.
 expect 0 "$clast" converge disc-explosion --set body.diameter='14 cm' --set stop.end_time='1 ms' --knob grains=1.069cm,0.06cm \
   --knob time_step=2us,1us --seeds 2 --within off --seconds 10 --store own.db -j 1
-tr '\n' ' ' <out | grep -qF "there was no time for 0.0006; with results, but a comparison takes two levels with 2 seeds: 0.01069 *" ||
+tr '\n' ' ' <out | grep -qF "there was no time for 0.0006 m; with results, but a comparison takes two levels with 2 seeds: 0.01069 m *" ||
   fail "why the own level is not compared: $(cat out)"
 printf '%s\n' 'name: late' 'scene: disc-explosion' 'set: {stop.end_time: 0.1 ms, charge.energy: 2 kJ/m}' \
   'vary: {body.diameter: [6 cm, 60 cm]}' 'seeds: {per_point: 2}' 'store: late.db' >late.yaml
 expect 0 "$clast" run late.yaml --quiet
 expect 0 "$clast" converge late.yaml --knob grains=1.069cm,0.12cm --seeds 2 --within off --seconds 10 -j 1
 # Runs that fail are no lack of time.
-tr '\n' ' ' <out | grep -qF "one round was asked for; run, but without a usable result: 0.0012 " || fail "why a level is missing: $(cat out)"
+tr '\n' ' ' <out | grep -qF "one round was asked for; run, but without a usable result: 0.0012 m" || fail "why a level is missing: $(cat out)"
 
 # A setting finer than any level has the law's error on every screen.
 cat >finer.yaml <<'YAML'
