@@ -103,7 +103,7 @@ sed 's/^name: .*/name: alone/; s/coarse: .*/angle: {uniform: [2 deg, 6 deg]}/; s
 printf 'name: %s\nsource: made up\nshots: [{specimens: %s, measured: [{quantity: largest_fraction, value: 0.85, error: %s, resolution: 0}%s]}]\n' \
   one 1 0.01 '' >one_shot.yaml
 printf 'name: %s\nsource: made up\nshots: [{specimens: %s, measured: [{quantity: largest_fraction, value: 0.85, error: %s, resolution: 0}%s]}]\n' \
-  two 3 0.002 ', {quantity: mean_fragment_mass, value: 5 kg/m, error: 0.1 kg/m, resolution: 0}' >two_shot.yaml
+  two 3 0.002 ', {quantity: mean_fragment_mass, value: 5 kg, error: 0.1 kg, resolution: 0}' >two_shot.yaml
 printf '# source: made up\nmass (g), count\n8, 30\n20, 12\n50, 5\n200, 1\n' >measured.csv
 expect 0 python "$source/tests/cli/transcripts.py" "$source/tests/cli/transcripts.txt"
 
