@@ -312,7 +312,7 @@ static status run_gnuplot(const struct chart *chart, int *end, struct error *err
   if (code == ENOENT)
     return status_fail(error, STATUS_MISSING,
                        "gnuplot draws the charts of clast, and this machine has none: `apt-get install gnuplot-nox`. "
-                       "Tables and --plot do not need it");
+                       "Tables do not need it");
   if (code)
     return status_fail(error, STATUS_MEMORY, "gnuplot does not start: %s", strerror(code));
   while (waitpid(child, &state, 0) < 0)

@@ -180,15 +180,6 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
                         const struct pooled_form *form, size_t count, const struct picture_series *series,
                         struct error *error);
 
-/* The same as text for a terminal (text_plot.c). Writes one row per bin:
- *     lower edge   count   F(m)   +-95% in %      ├──●──┤  ·
- * the point (○ in bins that begin below complete_mass), its 95 % interval over runs, and (·) the series' first fit.
- * columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. axis: letter of the lower edges
- * ("m"); value: name of its column, such as "F(m)". Bins without a count leave its column empty. It writes no colour,
- * and nothing when there is no fragment. */
-void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *axis, const char *unit, const char *value,
-                        const struct pooled_form *form, const struct picture_series *series);
-
 /* Quantities along a line (such as depth below a crater), in panels one above the other. A value that is not finite
  * leaves a gap. */
 struct picture_profile {
@@ -243,8 +234,6 @@ struct picture_sample {
  * axes. */
 status picture_scatter(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const struct picture_sample *sample, struct error *error);
-/* A histogram as text: edge, count, a bar. columns: width of the terminal. */
-void text_plot_histogram(FILE *out, int columns, bool unicode, const struct scatter_histogram *histogram);
 
 /* Safe, warned and refused runs at a value of an input, or in a range of values. */
 struct picture_margin_tile {

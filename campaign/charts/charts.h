@@ -103,13 +103,9 @@ struct spectrum_choice {
 status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
                                 struct measured *measured, struct error *error);
 
-/* The first eight pools, with the measured spectrum. page NULL: no picture. text: a plot on stdout. */
-struct spectrum_drawing {
-  const struct picture_page *page;
-  bool text, ascii;
-};
-status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
-                            const struct spectrum_drawing *drawing, struct error *error);
+/* The first eight pools, with the measured spectrum. */
+status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice, const struct picture_page *page,
+                            struct error *error);
 
 /* ---- bodies ---- */
 

@@ -7,8 +7,6 @@
 
 #include "schemas/memory.h"
 
-enum { COLUMNS = 100 };
-
 status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
                                 struct measured *measured, struct error *error) {
   struct spectrum_size size = {.density = choice->density};
@@ -26,10 +24,9 @@ struct curve {
   double complete_mass; /* kg; NaN: not known */
   double mass;          /* kg, all fragments of all runs */
   size_t runs;
-  struct picture_fit fit;      /* owns its runs */
-  const char *untold;          /* why there is no fit; NULL: there is one */
-  struct pooled_rivals rivals; /* n 0: not requested */
-  struct picture_thin *thin;   /* one for each run; owned with their bins */
+  struct picture_fit fit;    /* owns its runs */
+  const char *untold;        /* why there is no fit; NULL: there is one */
+  struct picture_thin *thin; /* one for each run; owned with their bins */
   size_t thin_count;
 };
 
@@ -59,7 +56,7 @@ static status make_runs(const struct pooled_runs *runs, struct picture_fit *fit,
   return STATUS_OK;
 }
 
-static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct curve *curve, struct error *error) {
+static status fit_curve(const struct ask_pool *pool, struct curve *curve, struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   struct pooled_exponent headline;
   curve->untold = pool->points > 1 ? "each of its points has a law of its own" : "no estimates are stored";
@@ -83,9 +80,7 @@ static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct cu
                                     .lower = headline.fit.lower,
                                     .upper = headline.fit.upper,
                                     .fragments_per_run = (double)headline.fit.n / runs};
-  if (curve->form.cumulative)
-    TRY(make_runs(&pool->data.runs, &curve->fit, error));
-  return with_rivals ? pooled_rivals(&pool->data.runs, lower, &curve->rivals, error) : STATUS_OK;
+  return curve->form.cumulative ? make_runs(&pool->data.runs, &curve->fit, error) : STATUS_OK;
 }
 
 static status make_thin(const struct ask_pool *pool, struct curve *curve, struct error *error) {
@@ -103,9 +98,8 @@ static status make_thin(const struct ask_pool *pool, struct curve *curve, struct
   return STATUS_OK;
 }
 
-/* with_rivals: also computes likelihood ratios of the pure power law against other laws. */
-static status make_curve(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
-                         struct curve *curve, struct error *error) {
+static status make_curve(const struct spectrum_choice *choice, const struct ask_pool *pool, struct curve *curve,
+                         struct error *error) {
   const size_t runs = pool->data.runs.count;
   const char *mark = pool->doubts.doubtful ? " !" : "";
   *curve = (struct curve){.form = ask_pool_form(pool, choice->cumulative, choice->density),
@@ -119,7 +113,7 @@ static status make_curve(const struct spectrum_choice *choice, bool with_rivals,
   for (size_t i = 0; i < pool->data.runs.first[runs]; i++)
     curve->mass += pool->data.runs.masses[i];
   TRY(pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error));
-  TRY(fit_curve(pool, with_rivals, curve, error));
+  TRY(fit_curve(pool, curve, error));
   if (choice->runs)
     TRY(make_thin(pool, curve, error));
   curve->form.first_run = NULL; /* both belong to the pool, which is released */
@@ -137,20 +131,6 @@ static struct picture_series series_of(const struct curve *curve) {
                                  .complete_mass = curve->complete_mass,
                                  .thin_count = curve->thin_count,
                                  .thin = curve->thin};
-}
-
-/* Is a pure power law enough? Likelihood ratios against two rivals, in the same windows. */
-static void print_rivals(const struct pooled_rivals *rivals, const char *kg) {
-  if (rivals->n == 0 || !isfinite(rivals->cutoff_beta))
-    return;
-  printf("  exponential cut-off: ");
-  if (isfinite(rivals->cutoff_mass))
-    printf("F(m) ~ m^%.2f exp(-m/m_c), m_c %.3g %s, 2 dlnL %.1f, p %.2g\n", -rivals->cutoff_beta, rivals->cutoff_mass,
-           kg, rivals->cutoff_ratio, rivals->cutoff_p);
-  else
-    printf("none seen below the largest fragments; with them p %.2g (small p: needed)\n", rivals->open_cutoff_p);
-  printf("  lognormal: 2 dlnL %.1f, p %.2g (dlnL: gain in log likelihood; small p: better than the pure power law)\n",
-         rivals->lognormal_ratio, rivals->lognormal_p);
 }
 
 struct curves {
@@ -275,23 +255,7 @@ static status draw_picture(struct store *store, const struct curves *curves, con
   return picture_spectrum(page, &words, &form, count, series, error);
 }
 
-static void print_plots(const struct curves *curves, bool ascii) {
-  const bool sizes = curves->choice->density > 0;
-  for (size_t i = 0; i < curves->count; i++) {
-    const struct curve *curve = &curves->curve[i];
-    const struct picture_series series = series_of(curve);
-    char per_mass[32];
-    snprintf(per_mass, sizeof per_mass, "F(m) [%s]", ask_pool_per_mass_unit(curve->form.size.dimensions));
-    printf("%s%s\n", i ? "\n" : "", curve->label);
-    text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "L" : "m",
-                       sizes ? "m" : ask_pool_mass_unit(curve->form.size.dimensions),
-                       curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L) [1/m]" : per_mass),
-                       &curve->form, &series);
-    print_rivals(&curve->rivals, ask_pool_mass_unit(curve->form.size.dimensions));
-  }
-}
-
-static status take_curves(struct store *store, bool with_rivals, struct curves *curves, struct error *error) {
+static status take_curves(struct store *store, struct curves *curves, struct error *error) {
   ASK_POOLS pools = ask_pools(store, &curves->choice->pool, NULL, error);
   for (const struct ask_pool *pool; !curves->more && (pool = ask_pools_next(&pools));) {
     curves->more = curves->count == curves->most; /* enough */
@@ -299,7 +263,7 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
       break;
     curves->point = curves->count == 0 ? pool->data.point_id : 0;
     struct curve *curve = &curves->curve[curves->count++];
-    TRY(make_curve(curves->choice, with_rivals, pool, curve, error));
+    TRY(make_curve(curves->choice, pool, curve, error));
     curve->fit.label = curve->fit_label;
     ask_doubts_add(&curves->doubts, &pool->doubts);
   }
@@ -309,18 +273,13 @@ static status take_curves(struct store *store, bool with_rivals, struct curves *
   return status_fail(error, STATUS_USAGE, "no finished run to draw");
 }
 
-status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
-                            const struct spectrum_drawing *drawing, struct error *error) {
+status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice, const struct picture_page *page,
+                            struct error *error) {
   __attribute__((cleanup(release))) struct curves *curves = memory_small(1, sizeof *curves);
   curves->choice = choice;
   curves->most = choice->measured ? PICTURE_SERIES - 1 : PICTURE_SERIES;
-  TRY(take_curves(store, drawing->text, curves, error));
-  if (drawing->page)
-    TRY(draw_picture(store, curves, drawing->page, error));
-  if (drawing->text)
-    print_plots(curves, drawing->ascii);
-  if (drawing->text && !drawing->page)
-    uncertainty_doubts(&curves->doubts, stderr);
+  TRY(take_curves(store, curves, error));
+  TRY(draw_picture(store, curves, page, error));
   if (curves->more)
     fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
             curves->count);

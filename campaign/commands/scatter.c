@@ -5,7 +5,7 @@
 
 struct options {
   const char *by, *quantity, *half_width, *picture;
-  bool split, plot, ascii;
+  bool split;
   struct chart_options chart;
 };
 
@@ -32,8 +32,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   TRY(ask_quantity_main(store, name, &choice.quantity, error));
   if (options->split)
     return print_variance(store, &choice, line->format, error);
-  TRY(options->plot ? print_scatter_plots(store, &choice, options->ascii, error)
-                    : print_scatter_rows(store, &choice, line->format, error));
+  TRY(print_scatter_rows(store, &choice, line->format, error));
   if (!options->picture)
     return STATUS_OK;
   const struct picture_page page = charts_page(options->picture, &options->chart);
@@ -46,8 +45,6 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL),
     OPTION_ROW_FLAG("split", 0, struct options, split),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
-    OPTION_ROW_FLAG("plot", 0, struct options, plot),
-    OPTION_ROW_FLAG("ascii", 0, struct options, ascii),
     CHART_OPTIONS(struct options, chart),
 };
 

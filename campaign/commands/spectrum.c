@@ -5,21 +5,19 @@
 struct options {
   const char *by, *size, *with, *picture;
   int64_t dimensions;
-  bool cumulative, runs, ejecta, plot, ascii;
+  bool cumulative, runs, ejecta;
   struct chart_options chart;
 };
 
 static status print(struct store *store, const struct options *options, const struct spectrum_choice *choice,
                     enum table_format format, struct error *error) {
-  const struct picture_page page = charts_page(options->picture, &options->chart);
-  const struct spectrum_drawing drawing = {options->picture ? &page : NULL, options->plot, options->ascii};
+  const struct picture_page chart = charts_page(options->picture, &options->chart),
+                            *page = options->picture ? &chart : NULL;
   if (options->ejecta)
-    return print_ejecta(store, &choice->pool, &drawing, format, error);
-  if (choice->measured)
-    TRY(print_spectrum_match(store, choice, format, error));
-  else if (!options->plot)
-    TRY(print_spectrum(store, choice, format, error));
-  return drawing.page || drawing.text ? spectrum_curves_draw(store, choice, &drawing, error) : STATUS_OK;
+    return print_ejecta(store, &choice->pool, page, format, error);
+  TRY(choice->measured ? print_spectrum_match(store, choice, format, error)
+                       : print_spectrum(store, choice, format, error));
+  return page ? spectrum_curves_draw(store, choice, page, error) : STATUS_OK;
 }
 
 static status check(const struct command_line *line, struct error *error) {
@@ -65,8 +63,6 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("with", 0, "FILE.csv", struct options, with, NULL),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
     OPTION_ROW_FLAG("ejecta", 0, struct options, ejecta),
-    OPTION_ROW_FLAG("plot", 0, struct options, plot),
-    OPTION_ROW_FLAG("ascii", 0, struct options, ascii),
     CHART_OPTIONS(struct options, chart),
 };
 

@@ -1,4 +1,4 @@
-/* Ejecta of impacts over their speed, as rows, text and a picture. */
+/* Ejecta of impacts over their speed, as rows and a picture. */
 #include "campaign/print/print.h"
 
 #include <math.h>
@@ -6,8 +6,6 @@
 #include <stdlib.h>
 
 #include "schemas/memory.h"
-
-enum { COLUMNS = 100 };
 
 /* The chart of spectra draws bins over any axis. */
 static const struct pooled_form above = {.cumulative = true};
@@ -61,26 +59,23 @@ static status take(struct store *store, const struct ask_pool_choice *choice, st
   OWNED struct ask_ejecta *ejecta = memory_small(1, sizeof *ejecta);
   ASK_POOLS pools = ask_ejecta_pools(store, choice, error);
   TRY(pools.code);
-  if (table) {
-    print_pool_columns(table, &pools);
-    table_column(table, "speed", "m/s");
-    table_column(table, "runs", NULL);
-    table_column(table, "mass", "kg");
-    table_column(table, "mass_hw95", "kg");
-    table_range(table, positive);
-    table_column(table, "momentum", "kg m/s");
-    table_column(table, "momentum_hw95", "kg m/s");
-    table_range(table, positive);
-    table_doubt_columns(table);
-  }
-  for (const struct ask_pool *pool; (!table || !table_broken(table)) && (pool = ask_pools_next(&pools));) {
+  print_pool_columns(table, &pools);
+  table_column(table, "speed", "m/s");
+  table_column(table, "runs", NULL);
+  table_column(table, "mass", "kg");
+  table_column(table, "mass_hw95", "kg");
+  table_range(table, positive);
+  table_column(table, "momentum", "kg m/s");
+  table_column(table, "momentum_hw95", "kg m/s");
+  table_range(table, positive);
+  table_doubt_columns(table);
+  for (const struct ask_pool *pool; !table_broken(table) && (pool = ask_pools_next(&pools));) {
     TRY(ask_ejecta(store, pool, ejecta, error));
     ask_doubts_add(&curves->doubts, &pool->doubts);
     curves->without += ejecta->without;
     if (ejecta->count)
       keep_curve(curves, pool, ejecta);
-    if (table)
-      print_rows(table, &pools, pool, ejecta);
+    print_rows(table, &pools, pool, ejecta);
   }
   return ask_pools_end(&pools);
 }
@@ -100,14 +95,15 @@ static status draw(struct store *store, const char *by, const struct curves *cur
   return picture_spectrum(page, &words, &above, curves->count, curves->series, error);
 }
 
-status print_ejecta(struct store *store, const struct ask_pool_choice *choice, const struct spectrum_drawing *drawing,
+status print_ejecta(struct store *store, const struct ask_pool_choice *choice, const struct picture_page *page,
                     enum table_format format, struct error *error) {
   OWNED struct curves *curves = memory_small(1, sizeof *curves);
-  TABLE table = drawing->text ? NULL : table_new(format, stdout);
+  const bool people = table_for_people(format);
+  TABLE table = table_new(format, stdout);
   bool known;
   TRY(ask_ejecta_known(store, &known, error));
   struct ask_pool_choice pool_choice = *choice;
-  pool_choice.inputs = table && table_for_people(format);
+  pool_choice.inputs = people;
   if (known)
     TRY(take(store, &pool_choice, table, curves, error));
   if (curves->count == 0)
@@ -115,24 +111,19 @@ status print_ejecta(struct store *store, const struct ask_pool_choice *choice, c
                        curves->without ? " over their speed: an older clast computed them. Run the campaign in a new "
                                          "store (--store)"
                                        : ": no impact is stored, or no matter left a target");
-  if (table)
-    TRY(table_end(table, error));
-  if (drawing->page)
-    TRY(draw(store, choice->by, curves, drawing->page, error));
-  for (size_t i = 0; drawing->text && i < curves->count; i++) {
-    printf("%s%s\n", i ? "\n" : "", curves->series[i].label);
-    text_plot_spectrum(stdout, COLUMNS, !drawing->ascii, "v", "m/s", "mass > v", &above, &curves->series[i]);
-  }
-  if (drawing->text || table_for_people(format))
+  TRY(table_end(table, error));
+  if (page)
+    TRY(draw(store, choice->by, curves, page, error));
+  if (people)
     uncertainty_doubts(&curves->doubts, stderr);
-  if (table && table_for_people(format))
+  if (people)
     fputs(
         "clast: mass and momentum (along the outward normal) of the target's matter that leaves at a speed or faster; "
         "±: 95 % intervals over runs, of pooled points over points and seeds\n",
         stderr);
   if (curves->without)
     fprintf(stderr, "clast: %zu runs are left out: an older clast stored no speeds of their ejecta\n", curves->without);
-  if (curves->more && (drawing->page || drawing->text))
+  if (curves->more && page)
     fprintf(stderr, "clast: only the first %d curves are drawn; --point, --where and --by choose others\n",
             PICTURE_SERIES);
   return STATUS_OK;

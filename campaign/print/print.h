@@ -40,12 +40,12 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
 
 /* ---- ejecta of impacts over their speed ---- */
 
-/* Prints one row per bin of speed of each pool: mass and momentum of what leaves at that speed or faster. drawing:
- * also, or as text instead, the mass of the first eight pools. STATUS_USAGE: no run has ejecta. */
-status print_ejecta(struct store *store, const struct ask_pool_choice *choice, const struct spectrum_drawing *drawing,
+/* Prints one row per bin of speed of each pool: mass and momentum of what leaves at that speed or faster. page: also
+ * draws the mass of the first eight pools; NULL: no picture. STATUS_USAGE: no run has ejecta. */
+status print_ejecta(struct store *store, const struct ask_pool_choice *choice, const struct picture_page *page,
                     enum table_format format, struct error *error);
 
-/* ---- how the runs of pools scatter, as rows, text and a picture, and the split of a variance ---- */
+/* ---- how the runs of pools scatter, as rows and a picture, and the split of a variance ---- */
 
 struct scatter_choice {
   struct ask_pool_choice pool;
@@ -57,8 +57,6 @@ struct scatter_choice {
 /* Prints a row per statistic of each pool. */
 status print_scatter_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
                           struct error *error);
-/* Prints a text histogram of each pool. */
-status print_scatter_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error);
 /* Draws histograms and distribution functions of the first eight pools. */
 status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error);

@@ -1,4 +1,4 @@
-/* How runs scatter, as rows, text and a picture; and the shares of inputs and seeds in the variance of a result: over
+/* How runs scatter, as rows and a picture; and the shares of inputs and seeds in the variance of a result: over
  * all points of a store, and as the sensitivity indices of a design. */
 #include <math.h>
 #include <stdlib.h>
@@ -116,32 +116,6 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
           "independent\n",
           stderr);
   return STATUS_OK;
-}
-
-static status plot_pool(bool ascii, const struct ask_pool *pool, struct error *error) {
-  SCATTER scatter = {0};
-  char mark[UNCERTAINTY_TEXT];
-  TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
-  const struct scatter_histogram histogram = scatter_histogram_of(&scatter, 0);
-  uncertainty_mark(&pool->doubts, mark);
-  printf("%s, %zu runs%s\n", pool->label, scatter.n, mark);
-  text_plot_histogram(stdout, COLUMNS, !ascii, &histogram);
-  if (isfinite(scatter.between))
-    printf("two modes: %.4g and %.4g, apart at %.4g; %.0f %% of the runs are in the upper one (%.0f to %.0f %%)\n",
-           scatter.lower_mode, scatter.upper_mode, scatter.between, 100 * scatter.upper_share, 100 * scatter.upper_low,
-           100 * scatter.upper_high);
-  return STATUS_OK;
-}
-
-status print_scatter_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error) {
-  ASK_POOLS pools = ask_pools(store, &choice->pool, choice->quantity, error);
-  struct ask_doubts doubts = {0};
-  for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
-    TRY(plot_pool(ascii, pool, error));
-    ask_doubts_add(&doubts, &pool->doubts);
-  }
-  uncertainty_doubts(&doubts, stderr);
-  return ask_pools_end(&pools);
 }
 
 struct samples {

@@ -92,7 +92,6 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     columns 1 stats marked.db --by time_step ;;
   scatter) marked "6 of 12" scatter marked.db
     columns 1 scatter marked.db
-    marked "6 of 12" scatter marked.db --plot
     marked "6 of 12" scatter marked.db --split
     columns 0 scatter marked.db --split
     caption s scatter marked.db --picture s.png ;;
@@ -102,7 +101,6 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
   spectrum) marked "6 of 12" spectrum marked.db
     columns 1 spectrum marked.db
     columns 1 spectrum marked.db --runs
-    marked "6 of 12" spectrum marked.db --plot
     marked "6 of 12" spectrum marked.db --with measured.csv
     columns 1 spectrum marked.db --with measured.csv
     caption f spectrum marked.db --picture f.png ;;
@@ -352,4 +350,4 @@ assert 1 < value("runs needed") / (40 / n) / (1.96 * sd / 0.03) ** 2 < 1.1, (row
 assert value("runs needed, seeds.until") % 10 == 0 and value("runs needed, seeds.until") > value("runs needed"), rows
 PY
 ok "values that runs lack"
-done_after 138
+done_after 134

@@ -37,9 +37,6 @@ python sums.py || fail "the table is not what the results say"
 ok "sums of the table"
 expect 0 "$clast" spectrum shots.db --ejecta --by impact.speed --csv
 [ "$(grep -c . out)" -gt 5 ] || fail "no pooled rows"
-expect 0 "$clast" spectrum shots.db --ejecta --point 2 --plot --ascii
-prints "mass > v"; prints "v [m/s]"
-! grep -q "count" out || fail "masses over speeds have no count"
 expect 0 "$clast" spectrum shots.db --ejecta --picture ejecta.svg --by '' # its points share seeds, which the interval has
 grep -q "without what a seed changes" ejecta.svg && fail "the interval lacks seeds that it has"
 says "over points and seeds"; ! grep -q "points share seeds" err || fail "the interval lacks seeds that it has"

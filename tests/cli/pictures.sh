@@ -5,25 +5,17 @@
 tiny small
 expect 0 "$clast" run small.yaml -j 2
 
-expect 0 "$clast" spectrum small.db --point 1 --plot
-prints "m [kg/m]"
-prints "●"
-expect 0 "$clast" spectrum small.db --point 1 --plot --ascii
-prints "*"
-LC_ALL=C grep -q '[^ -~]' out && fail "not ASCII only"
-ok "--ascii is ASCII"
-
 is_png() { [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"; ok "$1 is a PNG"; }
 caption() { grep '^caption_text' "$1" | sed "s/'\\.\"\\\\n\"\\.'/ /g"; } # in one line
 is_svg() { head -c 200 "$1" | grep -q '<svg\|<?xml' && tail -c 20 "$1" | grep -q '</svg>' || fail "$1 is no whole SVG"; ok "$1 is an SVG"; }
 
 expect 0 "$clast" spectrum small.db --picture spectrum.png
 is_png spectrum.png
-# --where and --by choose the same runs for the table, the text plot and the picture.
+# --where and --by choose the same runs for the table and the picture.
 choice=(small.db --where "threshold_strain < 0.03 AND replicate > 0" --by strain)
 expect 0 "$clast" spectrum "${choice[@]}" --csv --picture chosen.png --keep-script
 python - <<'PY'
-import csv, json, sqlite3
+import csv, sqlite3
 rows = list(csv.DictReader(open("out")))
 assert all(float(r["threshold_strain"]) == 0.02 and r["runs"] == "4" and r["points"] == "2" for r in rows)
 db = sqlite3.connect("small.db")
@@ -31,18 +23,15 @@ db = sqlite3.connect("small.db")
 assert sum(int(r["fragments"]) for r in rows) == n, n
 drawn = [float(l.split()[1]) for l in open("chosen.dat").read().split("\n\n\n")[0].splitlines() if l and l[0] not in "#" and "NaN" not in l.split()[1]]
 assert len(drawn) == len(rows) and all(abs(d / float(r["number_density"]) - 1) < 1e-5 for d, r in zip(drawn, rows)), (drawn, rows)
-json.dump(n, open("number", "w"))
 PY
 ok "a condition and an input choose the same runs for table and picture"
-expect 0 "$clast" spectrum "${choice[@]}" --plot --ascii
-same "$(awk '$1 + 0 > 0 && $2 + 0 > 0 {n += $2} END {print n}' out)" "$(cat number)" "fragments of the text plot"
 # Pooled points: why there is no line, and nothing of the exponent that is not drawn.
 caption chosen.gp >caption
 grep -q "No line: .*2 points, 4 runs.* (each of its points has a law of its own)" caption || fail "no word why pooled points have no line"
 grep -q "resolution:" caption && fail "resolution of an exponent that is not drawn"
 ok "pooled points have no law, and the caption says so"
 expect 64 "$clast" spectrum small.db --by nothing
-expect 64 "$clast" spectrum small.db --where "replicate > 99" --plot
+expect 64 "$clast" spectrum small.db --where "replicate > 99"
 says "small.db: none of the runs meets --where \"replicate > 99\""
 
 # Beside a measured spectrum: cumulative, by size.
@@ -374,7 +363,7 @@ expect 66 "$clast" plot small.db lines.svg -x strain --templates none
 says "share/clast/templates"
 expect 66 env PATH=/nowhere "$clast" plot small.db m.png -x strain
 says "apt-get install gnuplot-nox"
-expect 0 env PATH=/nowhere "$clast" spectrum small.db --point 1 --plot # text needs none
+expect 0 env PATH=/nowhere "$clast" spectrum small.db --point 1 # rows need none
 expect 0 "$clast" picture disc.h5 disc.pdf
 same "$(head -c 4 disc.pdf)" "%PDF" "a PDF"
 
@@ -421,8 +410,6 @@ share = lambda name: float(rows[name]["share"])
 assert abs(share("all inputs together") + share("seeds") - 1) < 1e-12
 PY
 ok "the shares of inputs and seeds sum to one"
-expect 0 "$clast" scatter small.db --plot --ascii --by strain
-prints "from     runs"
 expect 0 "$clast" scatter small.db --picture scatter.svg -Q fragment_count
 is_svg scatter.svg
 expect 64 "$clast" scatter small.db --half-width none
@@ -486,4 +473,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 171
+done_after 165

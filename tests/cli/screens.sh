@@ -7,10 +7,10 @@ expect 0 "$clast" run small.yaml -j 2 --quiet
 # A density without its unit, a place without its unit.
 expect 64 "$clast" spectrum small.db --size 2.7
 says "2.7 has no unit; write '2.7 kg/m^3' or '2.7 g/cm^3'"
-expect 0 "$clast" spectrum small.db --point 4 --size "2.7 g/cm^3" --plot
-prints "L [m]"; prints "F(L) [1/m]"
-expect 0 "$clast" spectrum small.db --point 4 --plot
-prints "m [kg/m]"; prints "F(m) [m/kg]"
+expect 0 "$clast" spectrum small.db --point 4 --size "2.7 g/cm^3"
+prints "lower [m]"; prints "[m^-1]"
+expect 0 "$clast" spectrum small.db --point 4
+prints "[kg/m]   [kg/m]"; prints "number_density [m/kg]"
 expect 0 "$clast" query small.db "SELECT run_id, total_mass FROM runs"
 prints "total_mass [kg/m]"
 # Two meanings, two names: fragments per kg and run here, the share of the fragments per kg in the view spectra.
