@@ -34,7 +34,6 @@ static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("first-seed", 0, "N", struct study_request, first_seed, 0, INT64_MAX, "0"),
     OPTION_ROW_TEXT("store", 0, "FILE", struct study_request, store, NULL),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct study_request, picture),
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "frontier", 0, "FILE", struct study_request, frontier),
     OPTION_ROW_FLAG("list", 0, struct study_request, list),
     LAUNCH_OPTIONS(struct study_request, launch),
 };

@@ -129,8 +129,8 @@ status study_print_knobs(const struct engine_kind *kind, enum table_format forma
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
 /* Of the first scene, which the title names by its point, and quantity. Draws the levels of the first knob that has a
  * step, with law, limit and band, over the step; without such a knob the levels over the processor time of a run, one
- * curve per knob. `of_errors`: the error of each level over processor time, and the frontier. */
-status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error);
+ * curve per knob. */
+status study_print_picture(const struct study *study, const char *path, struct error *error);
 
 /* ---- study_request.c ---- */
 
@@ -140,8 +140,8 @@ struct study_request {
   struct option_list knobs, set;
   const char *quantity, *store, *within, *seconds;
   int64_t first_seeds, most_seeds, first_seed;
-  const char *picture, *frontier; /* of means and of errors */
-  bool list;                      /* of the knobs, and no study */
+  const char *picture;
+  bool list; /* of the knobs, and no study */
 };
 
 enum { STUDY_SCENES = 64 };

@@ -166,8 +166,7 @@ static void print_level(struct table *table, const struct study_ladder *ladder, 
     table_missing(table);
   table_real(table, row->cpu);
   table_text(table, row->frontier ? "yes" : "");
-  table_reals(table, 4, (const double[]){row->deviation, row->skew, row->upper_mode, row->correlation});
-  table_reals(table, 3, (const double[]){row->correlation_low, row->correlation_high, row->break_even});
+  table_reals(table, 3, (const double[]){row->deviation, row->skew, row->upper_mode});
 }
 
 /* ---- sentences ---- */
@@ -418,35 +417,6 @@ static status print_limit(const struct printing *printing, const struct study_la
   return STATUS_OK;
 }
 
-/* Prints whether a cheaper level would save runs of a finer one. Levels that do not differ from the reference are
- * skipped, because the cheaper level can replace the reference. */
-static void print_gain(size_t count, const struct study_found *found, FILE *out) {
-  const double worth_it = 1.5; /* below this gain the estimator is not worth its effort */
-  const struct convergence_row *best = NULL;
-  double most = 0;
-  for (size_t i = 0; i < count; i++)
-    for (size_t l = 0; l < found[i].count; l++) {
-      const struct convergence_row *row = &found[i].rows[l];
-      const double gain = convergence_gain(row->correlation_low, row->cost_ratio);
-      if (fabs(row->bias) > row->bias_half_width && gain > most) {
-        best = row;
-        most = gain;
-      }
-    }
-  if (!best)
-    fputs("control variates (many coarse runs correct few fine ones): no level that differs from its reference has a "
-          "known correlation with the next finer one\n",
-          out);
-  else
-    fprintf(out,
-            "control variates (many coarse runs correct few fine ones): %s; the best is %s = %s, gain %.2g with its "
-            "next finer level (at least %.2g)\n",
-            most >= worth_it ? "a pair of levels would save time"
-                             : "no pair of levels is sure to gain 1.5, so that plain "
-                               "runs are the better use of time",
-            best->knob, best->setting, best->gain, most);
-}
-
 /* The table of a quantity. */
 static status print_levels(struct printing *printing, size_t from, size_t quantity, size_t count,
                            const struct study_found *found, struct error *error) {
@@ -456,8 +426,7 @@ static status print_levels(struct printing *printing, size_t from, size_t quanti
   table_range(table, views_range(study->quantity[quantity].name));
   table_columns(table,
                 (const char *const[]){"mean_weak", "bias", "bias_hw95", "error", "cpu_s", "frontier", "sd", NULL});
-  static const char *const rare[] = {"skewness",        "share of upper mode", "correlation",
-                                     "correlation low", "correlation high",    "worth it above this correlation"};
+  static const char *const rare[] = {"skewness", "share of upper mode"};
   for (size_t c = 0; c < sizeof rare / sizeof rare[0]; c++) {
     table_column(table, rare[c], NULL);
     table_rare(table);
@@ -518,8 +487,6 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   status code = STATUS_OK;
   for (size_t i = 0; i < count && code == STATUS_OK; i++)
     code = print_limit(printing, &study->ladder[from + i], quantity, &found[i], out, error);
-  if (printing->format == TABLE_ALL)
-    print_gain(count, found, out);
   text_close_small(out, &sentences);
   text_wrap_lines(sentences, WIDTH, stdout);
   return code;
@@ -545,11 +512,6 @@ static status print_rows(const struct printing *printing, size_t from, size_t qu
     }
   return STATUS_OK;
 }
-
-static const char legend_of_all[] =
-    "correlation: of the runs of a seed with those at the next finer level; above that of the column \"worth it\", the "
-    "coarse level as a control variate would save time. share of upper mode: of the runs, where their values have two "
-    "modes (peaks).";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   OWNED struct study_found *found = NULL;
@@ -591,7 +553,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
       text_append(words, sizeof words, "%s%s", *words ? " " : "", legend[k].text);
   words_print(stderr, "", "%s", words);
   if (format == TABLE_ALL)
-    words_print(stderr, "", "%s", legend_of_all);
+    words_print(stderr, "", "share of upper mode: of the runs, where their values have two modes (peaks).");
   bool main = false;
   char word[TEXT_WORD];
   for (size_t q = 0; q < study->quantity_count; q++)
@@ -606,7 +568,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
   return STATUS_OK;
 }
 
-/* ---- pictures: results over cost, and the error over cost with the frontier ---- */
+/* ---- the picture: results over the step, or over cost ---- */
 
 enum { CURVES = PICTURE_SERIES, MARKS = LIMITS_STUDY_KNOBS * KNOB_LEVELS }; /* more marks than steps of a law */
 
@@ -625,11 +587,10 @@ static struct picture_mean mean_at(double x, const struct convergence_row *row, 
 }
 
 /* Adds a mark of the level to the last curve, in order of cost. */
-static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool of_errors, bool doubtful) {
+static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool doubtful) {
   struct picture_mean *means = drawing->means[drawing->count];
   struct picture_curve *curve = &drawing->curves[drawing->count];
-  const struct picture_mean mark = of_errors ? (struct picture_mean){row->cpu, row->error, NAN, NAN, NAN, doubtful}
-                                             : mean_at(row->cpu, row, doubtful);
+  const struct picture_mean mark = mean_at(row->cpu, row, doubtful);
   if (!isfinite(mark.x) || !isfinite(mark.y) || curve->count == MARKS)
     return;
   size_t place = curve->count++;
@@ -638,15 +599,13 @@ static void add_mark(struct drawing *drawing, const struct convergence_row *row,
   means[place] = mark;
 }
 
-/* A curve of the levels of some knobs; with `frontier` only of those on it. */
-static void add_curve(struct drawing *drawing, const char *label, size_t from, size_t knobs, bool of_errors,
-                      bool frontier) {
-  const struct study_found *found = drawing->found;
-  drawing->curves[drawing->count] = (struct picture_curve){.label = label, .mean = drawing->means[drawing->count]};
-  for (size_t i = from; i < from + knobs; i++)
-    for (size_t l = 0; l < found[i].count; l++)
-      if (!frontier || found[i].rows[l].frontier)
-        add_mark(drawing, &found[i].rows[l], of_errors, drawing->doubtful[i][l]);
+/* A curve of the levels of a knob. */
+static void add_curve(struct drawing *drawing, size_t knob) {
+  const struct study_found *found = &drawing->found[knob];
+  drawing->curves[drawing->count] = (struct picture_curve){.label = found->limit.knob,
+                                                           .mean = drawing->means[drawing->count]};
+  for (size_t l = 0; l < found->count; l++)
+    add_mark(drawing, &found->rows[l], drawing->doubtful[knob][l]);
   drawing->count += drawing->curves[drawing->count].count > 0;
 }
 
@@ -693,7 +652,7 @@ static void draw_law(const struct study *study, size_t knob, struct drawing *dra
   drawing->count = 2;
 }
 
-status study_print_picture(const struct study *study, bool of_errors, const char *path, struct error *error) {
+status study_print_picture(const struct study *study, const char *path, struct error *error) {
   OWNED struct drawing *drawing = NULL;
   STORE store = NULL;
   TRY(memory_array(&drawing, 1, sizeof *drawing, "the picture of a study", error));
@@ -709,25 +668,20 @@ status study_print_picture(const struct study *study, bool of_errors, const char
     }
   struct ask_doubts sum;
   TRY(sum_doubts(&printing, knobs, 1, &sum, error));
-  const size_t stepped = of_errors ? knobs : stepped_knob(study, knobs);
+  const size_t stepped = stepped_knob(study, knobs);
   char label[2][120];
   if (stepped < knobs)
     draw_law(study, stepped, drawing, label);
-  if (of_errors)
-    add_curve(drawing, "best for their cost: no level is both cheaper and nearer", 0, knobs, true, true);
   for (size_t i = 0; stepped == knobs && i < knobs && drawing->count < CURVES; i++)
-    add_curve(drawing, drawing->found[i].limit.knob, i, 1, of_errors, false);
+    add_curve(drawing, i);
 
-  char title[1200], point[512], quantity[CHARTS_LABEL], y[CHARTS_LABEL + 16], x[200] = "processor time of a run (s)",
-                                                                              unit[64] = "";
-  charts_label(study->quantity[0].name, quantity);
-  snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
+  char title[1200], point[512], y[CHARTS_LABEL], x[200] = "processor time of a run (s)", unit[64] = "";
+  charts_label(study->quantity[0].name, y);
   design_axis_show_point(study->varied_count, study->varied, study->ladder[0].base->inputs, point, sizeof point);
   snprintf(title, sizeof title, "%s%s%s: %s%s", study->ladder[0].base->name, *point ? ", " : "", point, y,
            stepped < knobs ? " and its limit" : " over the cost of a run");
   if (study->quantity[0].row)
-    TRY(charts_axis(store, study->quantity[0].column, quantity, error)); /* with its unit */
-  snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
+    TRY(charts_axis(store, study->quantity[0].column, y, error)); /* with its unit */
   if (stepped < knobs) {
     const struct knob *knob = study->ladder[stepped].levels.knob;
     const char *input = knob->inputs[0].path;
@@ -739,14 +693,12 @@ status study_print_picture(const struct study *study, bool of_errors, const char
   }
   const struct picture_page page = charts_page(path, NULL);
   char caption[CHARTS_LABEL];
-  snprintf(caption, sizeof caption, "A mark is a level of a knob%s%s", stepped < knobs ? "" : ": ",
-           stepped < knobs ? ""
-           : of_errors     ? "how far finer settings may move the mean, all knobs together"
-                           : "mean over seeds with its 95 % interval");
+  snprintf(caption, sizeof caption, "A mark is a level of a knob%s",
+           stepped < knobs ? "" : ": mean over seeds with its 95 % interval");
   charts_doubts(NULL, &sum, caption, sizeof caption);
   const struct picture_words words = {title, caption, x, y};
   const struct sample_range range = views_range(study->quantity[0].column);
   for (size_t i = 0; i < drawing->count; i++)
-    drawing->curves[i].range = of_errors ? NULL : &range;
+    drawing->curves[i].range = &range;
   return picture_curves(&page, &words, drawing->count, drawing->curves, error);
 }

@@ -420,13 +420,11 @@ static status run_study(struct study *study, const struct study_request *request
                        study->rule.seconds, (long long)study->rule.first_seeds, study->limits.store);
   TRY(study_print(study, line->format, request->launch.quiet, error));
   const struct study_ladder *last = &study->ladder[study->ladder_count - 1];
-  if ((request->picture || request->frontier) && !request->launch.quiet && last->base != study->ladder[0].base)
+  if (request->picture && !request->launch.quiet && last->base != study->ladder[0].base)
     fputs("clast: a picture is of the first point, which its title names; with --set of the varied inputs the command "
           "draws another\n",
           stderr);
-  if (request->picture)
-    TRY(study_print_picture(study, false, request->picture, error));
-  return request->frontier ? study_print_picture(study, true, request->frontier, error) : STATUS_OK;
+  return request->picture ? study_print_picture(study, request->picture, error) : STATUS_OK;
 }
 
 status study_launch(const struct study_request *request, const struct command_line *line, struct error *error) {

@@ -537,7 +537,7 @@ says "has 3 seeds, this one 2, but another level: it takes its place. --seeds 3"
 same "$(number coarse.db "select max(n) from convergence where knob = 'grains' and base")" 2 "seeds of the study that took its place"
 # The pages have the columns by the names of the table, and results where they speak of results.
 tr -d '\n' <out >heads; cat err >>heads
-for column in bias error best correlation "worth it above this correlation" "share of upper mode"; do
+for column in bias error best "share of upper mode"; do
   tr -s ' \n' ' ' <heads | grep -qF "$column" || fail "no column $column"
   grep -qF "**$column**" "$source/campaign/README.md" || fail "the page does not name the column $column"
 done

@@ -140,13 +140,13 @@ for command in commands:
                 attempt([command, *base, *operands, f"--{name}", "other.db"], "other.db", None)
             continue
         files.add(f"{command} --{name}")
-        for victim, must in victims("png" in value or name in ("picture", "frontier"), operands):
+        for victim, must in victims("png" in value or name == "picture", operands):
             attempt([command, *base, *with_inputs(operands, victim), f"--{name}", victim], victim, must)
 
 for mode in ([], ["--bits"], ["--csv"], ["--crate"], ["--per", "point", "--jsonl"]):
     for victim, must in victims(False, ["self.db"]):
         attempt(["export", "self.db", victim, *mode], "", {64, 74})
-assert {"simulate --fields", "simulate --restart", "replay --fields", "report --output", "converge --frontier",
+assert {"simulate --fields", "simulate --restart", "replay --fields", "report --output", "converge --picture",
         "spectrum --picture"} <= files, files
 assert tried > 250 and refused > 100, (tried, refused)
 print(f"{tried} commands, {len(files)} options that name an output, {len(failures)} faults")
