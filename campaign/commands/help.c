@@ -106,131 +106,46 @@ void help_overview(FILE *out) {
   fprintf(out, "\n`clast COMMAND --help` tells more, with examples. %s\n", streams);
 }
 
-/* ---- the manual page clast(1) in man(7) macros, for groff and mandoc ---- */
+/* ---- the manual page clast(1): the help within man(7) macros, for groff and mandoc ---- */
 
-/* manual.man, embedded by CMakeLists.txt: what is not in the tables. What is stands at the mark. */
+/* manual.man, embedded by CMakeLists.txt: what is not in the help. What is stands at the mark. */
 extern const char manual_text[];
-static const char manual_mark[] = "@TABLES@\n";
+static const char manual_mark[] = "@HELP@\n";
 
-/* Writes text for roff. Some characters are escaped, because roff gives them a meaning, or a UTF-8 terminal shows
- * others that cannot be pasted into a shell. In prose, text in backquotes is bold, a hyphen between letters stays one,
- * and lines are joined unless indented. */
-static void print_roff(const char *text, int length, bool prose, FILE *out) {
+/* Text as it stands. roff gives some characters a meaning, or a UTF-8 terminal shows others that cannot be pasted into
+ * a shell: they are escaped. */
+static void print_text(const char *text, FILE *out) {
   static const char *const escapes[128] = {['\\'] = "\\(rs", ['-'] = "\\-",   ['\''] = "\\(aq", ['"'] = "\\(dq",
                                            ['`'] = "\\(ga",  ['^'] = "\\(ha", ['~'] = "\\(ti"};
-  bool code = false, indented = false, begins = true;
-  for (const char *c = text; c < text + length; c++) {
-    if (begins && *c == '.')
-      fputs("\\&", out); /* roff reads a line that begins with a full stop as a command */
-    begins = *c == '\n';
-    if (prose && *c == '\n') {
-      indented = c[1] == ' ';
-      fputc(indented ? '\n' : ' ', out);
-    } else if (prose && *c == '`') {
-      code = !code;
-      fputs(code ? "\\fB" : "\\fR", out);
-    } else if (prose && *c == '-' && !code && !indented && c > text && isalpha((unsigned char)c[-1]) &&
-               isalpha((unsigned char)c[1])) {
-      fputc('-', out);
-    } else if ((unsigned char)*c < 128 && escapes[(unsigned char)*c]) {
-      fputs(escapes[(unsigned char)*c], out);
-    } else {
-      fputc(*c, out);
-    }
+  fputs(".EX\n", out);
+  for (const char *c = text; *c; c++) {
+    const char plain[] = {*c, '\0'}, *escape = (unsigned char)*c < 128 ? escapes[(unsigned char)*c] : NULL;
+    const bool begins = c == text || c[-1] == '\n';
+    fputs(begins && *c == '.' ? "\\&" : "", out); /* roff reads a line that begins with a full stop as a command */
+    fputs(escape ? escape : plain, out);
   }
+  fputs(".EE\n", out);
 }
 
-static void print_word(const char *before, const char *word, FILE *out) {
-  fputs(before, out);
-  print_roff(word, (int)strlen(word), false, out);
-}
-
-static void print_prose(const char *text, FILE *out) {
-  print_roff(text, (int)strlen(text), true, out);
-}
-
-static void print_examples(const char *lines, int length, FILE *out) {
-  fputs(".RS 4\n.EX\n", out);
-  print_roff(lines, length, false, out);
-  fputs("\n.EE\n.RE\n", out);
-}
-
-static void print_option(const struct command *command, const struct option_row *row, FILE *out) {
-  char doc[OPTION_DOC];
-  option_doc(command, row, doc);
-  fputs(".TP 15\n", out);
-  if (row->letter)
-    fprintf(out, "\\fB\\-%c\\fR, ", row->letter);
-  print_word("\\fB\\-\\-", row->name, out);
-  print_word(row->argument ? "\\fR \\fI" : "", row->argument ? row->argument : "", out);
-  fputs("\\fR\n", out);
-  print_prose(doc, out);
-  if (row->initial && *row->initial) {
-    print_word(" (default ", row->initial, out);
-    fputc(')', out);
-  }
-  fputc('\n', out);
-}
-
-static void print_command(const struct command *command, FILE *out) {
-  const struct option_row *row;
-  int length;
-  fprintf(out, ".SS clast %s%s%s", command->name, option_row(command, 0) ? " [OPTIONS]" : "",
-          *command->arguments ? " " : "");
-  print_word("", command->arguments, out);
-  fputc('\n', out);
-  const char *doc = option_part(command, OPTION_ABOUT, &length);
-  print_roff(doc, length, true, out);
-  fputc('\n', out);
-  for (size_t k = 0; (row = option_row(command, k)); k++)
-    print_option(command, row, out);
-  fputs(".PP\nExamples:\n", out);
-  const char *examples = option_part(command, OPTION_EXAMPLES, &length);
-  print_examples(examples, length, out);
-}
-
-static void print_tables(FILE *out) {
-  print_prose(purpose, out);
-  fputs("\n.PP\nFirst steps:\n", out);
-  print_examples(first_steps, (int)strlen(first_steps), out);
-  fputs(".PP\n", out);
-  print_prose(streams, out);
-  fputs("\n.SH COMMANDS\n.PD 0\n", out);
-  for (size_t i = 0; i < commands_count(); i++) {
-    int length;
-    const char *summary = option_part(commands_all()[i], OPTION_SUMMARY, &length);
-    fprintf(out, ".TP 15\n\\fB%s\\fR\n", commands_all()[i]->name);
-    print_roff(summary, length, true, out);
-    fputc('\n', out);
-  }
-  fputs(".PD\n", out);
-  const char *group = "";
-  for (size_t i = 0; i < commands_count(); i++) {
-    const struct command *command = commands_all()[i];
-    if (strcmp(command->group, group) != 0) {
-      fputs(".SH ", out);
-      for (const char *c = command->group; *c; c++)
-        fputc(toupper((unsigned char)*c), out);
-      fputc('\n', out);
-    }
-    group = command->group;
-    print_command(command, out);
-  }
-  fputs(".SH EXIT STATUS\n", out);
-  for (size_t i = 0; i < EXITS; i++) {
-    fprintf(out, ".TP 15\n\\fB%d\\fR\n", (int)exits[i]);
-    print_prose(status_meaning(exits[i]), out);
-    fputc('\n', out);
-  }
-}
-
+/* The list of commands and the help of each. */
 static void print_manual(FILE *out) {
   const char *mark = strstr(manual_text, manual_mark);
-  fputs(".\\\" Made by `clast help --man` from the tables of the commands: change those.\n"
+  fputs(".\\\" Made by `clast help --man` from the texts of the commands: change those.\n"
         ".TH CLAST 1 " BUILD_DATE " \"clast " BUILD_VERSION "\" \"User Commands\"\n",
         out);
   fwrite(manual_text, 1, (size_t)(mark - manual_text), out);
-  print_tables(out);
+  for (size_t i = 0; i <= commands_count(); i++) {
+    const struct command *command = i ? commands_all()[i - 1] : NULL;
+    OWNED char *text = NULL;
+    FILE *help = text_open(&text);
+    if (command) {
+      help_one(command, help);
+      fprintf(out, ".SS clast %s\n", command->name);
+    } else {
+      help_overview(help);
+    }
+    print_text(text_close_small(help, &text), out);
+  }
   fputs(mark + strlen(manual_mark), out);
 }
 
