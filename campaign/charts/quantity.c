@@ -186,37 +186,6 @@ static bool suits(const struct axes_wanted *wanted, size_t place, const struct a
          (wanted->least < 2 && values->given == values->points && values->numbers == 0 && values->kinds <= MOST_PLACES);
 }
 
-/* No inputs suit all points: names the one, or the two, that most points have. */
-static status none_suits(struct store *store, const struct axes_wanted *wanted, size_t count,
-                         const struct ask_column *axes, struct error *error) {
-  const struct ask_column *best[2] = {axes, axes};
-  struct ask_group_values values, of = {.points = 0};
-  for (size_t i = 0; i < count; i++)
-    for (size_t k = wanted->least < 2 ? i : i + 1; k < (wanted->least < 2 ? i + 1 : count); k++) {
-      TRY(ask_group_values(store, axes[i].name, axes[k].name, &values, error));
-      if (values.numbers > of.numbers) {
-        of = values;
-        best[0] = &axes[i];
-        best[1] = &axes[k];
-      }
-    }
-  if (of.numbers == 0)
-    return status_fail(
-        error, STATUS_USAGE,
-        wanted->least < 2 ? "no varied input suits an axis: `clast stats STORE --by %s` has the means"
-                          : "no point has numbers of two varied inputs: `clast plot` draws a quantity over one (-x %s)",
-        axes->word);
-  if (wanted->least < 2)
-    return status_fail(error, STATUS_USAGE,
-                       "no varied input has numbers in all points: -x %s draws the %" PRId64 " of %" PRId64
-                       " points that have it",
-                       best[0]->word, of.numbers, of.points);
-  return status_fail(error, STATUS_USAGE,
-                     "no two varied inputs are numbers in all points: -x %s -y %s draws the %" PRId64 " of %" PRId64
-                     " points that have both",
-                     best[0]->word, best[1]->word, of.numbers, of.points);
-}
-
 /* Where the user named no input (all NULL): takes the first ones that were varied and that suit all points, and names
  * them on stderr. An input with one value comes after the others. */
 static status choose_axes(struct store *store, const struct axes_wanted *wanted, const char *inputs[AXES],
@@ -241,7 +210,7 @@ static status choose_axes(struct store *store, const struct axes_wanted *wanted,
   for (int constant = 0; constant < 2; constant++)
     for (size_t i = 0; i < count && taken < wanted->most; i++) {
       struct ask_group_values values;
-      TRY(ask_group_values(store, axes[i].name, NULL, &values, error));
+      TRY(ask_group_values(store, axes[i].name, &values, error));
       if (used[i] || (values.kinds < 2) != constant || !suits(wanted, taken, &values))
         continue;
       used[i] = true;
@@ -250,8 +219,17 @@ static status choose_axes(struct store *store, const struct axes_wanted *wanted,
       text_append(chosen, sizeof chosen, " %s %s", taken < least ? option[taken] : by, axes[i].word);
       taken++;
     }
-  if (taken < least)
-    return none_suits(store, wanted, count, axes, error);
+  if (taken < least) {
+    *chosen = '\0';
+    for (size_t i = 0; i < count; i++)
+      text_append(chosen, sizeof chosen, "%s%s", i ? ", " : "", axes[i].word);
+    return status_fail(error, STATUS_USAGE,
+                       least < 2 ? "no varied input has numbers in all points: name one with -x, and the points that "
+                                   "have it are drawn: %s"
+                                 : "no two varied inputs have numbers in all points: name two with -x and -y, and the "
+                                   "points that have both are drawn: %s",
+                       chosen);
+  }
   fprintf(stderr, "clast: drawn over the first inputs that were varied%s:%s\n",
           last < taken ? "" : " and suit all points", chosen);
   return STATUS_OK;

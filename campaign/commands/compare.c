@@ -66,30 +66,21 @@ static bool print(struct table *table, bool people, const struct ask_pairs_row *
   return !untold && isnan(row->difference.half_width) && row->difference.side[0].n > 1 && row->difference.side[1].n > 1;
 }
 
-enum { NAMED = 4 }; /* most points in a message */
-
 /* The exponents that the table leaves out. */
 struct untold {
-  char reason[300], points[2][200]; /* of a and of b */
-  size_t count[2];
+  char reason[300];
   bool no_interval; /* of one that the table has */
 };
 
 static void note_untold(struct untold *untold, const struct ask_pairs_row *row) {
   for (int k = 0; k < 2; k++) {
     untold->no_interval |= !row->untold[k] && isfinite(row->exponent[k]) && row->difference.side[k].n == 0;
-    if (!row->untold[k])
-      continue;
     pooled_exponent_tell(row->untold[k], untold->reason, sizeof untold->reason);
-    if (untold->count[k]++ < NAMED)
-      text_append(untold->points[k], sizeof untold->points[k], "%s%lld", untold->count[k] > 1 ? ", " : " ",
-                  (long long)row->point[k]);
   }
 }
 
-/* "beta_masses_from_5 -: the exponent is too uncertain to print: fewer than 5 fragments: point 1 of a" */
+/* "beta_masses_from_5 -: the exponent is too uncertain to print: fewer than 5 fragments" */
 static status tell_untold(const struct untold *untold, const char *quantity, struct error *error) {
-  OWNED char *text = NULL;
   bool exponent;
   enum exponent_method method;
   enum estimates_window window;
@@ -98,23 +89,12 @@ static status tell_untold(const struct untold *untold, const char *quantity, str
   if (!*untold->reason)
     return STATUS_OK;
   TRY(estimates_named(quantity, &exponent, &method, &window, error));
-  FILE *out = text_open(&text);
-  fprintf(out, "clast: beta_%s_%s -: %s:", exponent_method_names[method], estimates_window_names[window],
+  fprintf(stderr, "clast: beta_%s_%s -: %s", exponent_method_names[method], estimates_window_names[window],
           untold->reason);
-  for (int k = 0; k < 2; k++) {
-    if (untold->count[k] == 0)
-      continue;
-    fprintf(out, "%s point%s%s", k && untold->count[0] ? ";" : "", untold->count[k] == 1 ? "" : "s", untold->points[k]);
-    if (untold->count[k] > NAMED)
-      fprintf(out, " and %zu more", untold->count[k] - NAMED);
-    fprintf(out, " of %s", sides[k]);
-  }
   if (window > ESTIMATES_FROM_2)
-    fprintf(out, ". `-Q beta_%s_%s` takes lighter fragments, too", exponent_method_names[method],
+    fprintf(stderr, ". `-Q beta_%s_%s` takes lighter fragments, too", exponent_method_names[method],
             estimates_window_names[ESTIMATES_FROM_2]);
-  if (!text_close(out, &text))
-    return status_fail(error, STATUS_MEMORY, "no memory for the table");
-  fprintf(stderr, "%s\n", text);
+  fputc('\n', stderr);
   return STATUS_OK;
 }
 

@@ -426,16 +426,14 @@ status ask_group_pooled(struct store *store, const char *by, struct ask_group_po
  * ask_group() differ in more than their axes, as those of two campaigns do. */
 status ask_group_changing(struct store *store, const char *by, char changing[ASK_GROUP_POOLED], struct error *error);
 
-/* How the points with runs have an input, or two together: columns of the views (ask_columns_axes()); second: may be
- * NULL. */
+/* How the points with runs have an input: a column of the views (ask_columns_axes()). */
 struct ask_group_values {
   int64_t points;  /* with runs */
-  int64_t given;   /* have a value of each */
-  int64_t numbers; /* have a number of each */
+  int64_t given;   /* have a value */
+  int64_t numbers; /* have a number */
   int64_t kinds;   /* different values; none is one */
 };
-status ask_group_values(struct store *store, const char *first, const char *second, struct ask_group_values *values,
-                        struct error *error);
+status ask_group_values(struct store *store, const char *input, struct ask_group_values *values, struct error *error);
 
 /* The full name of one result column of the view runs from a unique ending of it. STATUS_USAGE names the known ones. */
 enum { ASK_GROUP_NAME = 128 };

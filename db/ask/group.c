@@ -468,16 +468,14 @@ status ask_group_changing(struct store *store, const char *by, char changing[ASK
   return take_first_names(&answer, changing);
 }
 
-status ask_group_values(struct store *store, const char *first, const char *second, struct ask_group_values *values,
-                        struct error *error) {
+status ask_group_values(struct store *store, const char *input, struct ask_group_values *values, struct error *error) {
   ANSWER answer = answer_to(store, error,
-                            "SELECT count(*), total(a IS NOT NULL AND b IS NOT NULL), total(typeof(a) IN ('real', "
-                            "'integer') AND typeof(b) IN ('real', 'integer')), count(DISTINCT quote(a) || quote(b)) "
-                            "FROM (SELECT DISTINCT point_id, \"%w\" AS a, \"%w\" AS b FROM points WHERE n > 0)",
-                            first, second ? second : first);
+                            "SELECT count(*), count(a), total(typeof(a) IN ('real', 'integer')), count(DISTINCT "
+                            "quote(a)) FROM (SELECT DISTINCT point_id, \"%w\" AS a FROM points WHERE n > 0)",
+                            input);
   *values = (struct ask_group_values){.points = 0};
   if (answer_next(&answer))
-    *values = (struct ask_group_values){answer_integer(&answer, 0), (int64_t)answer_real(&answer, 1),
+    *values = (struct ask_group_values){answer_integer(&answer, 0), answer_integer(&answer, 1),
                                         (int64_t)answer_real(&answer, 2), answer_integer(&answer, 3)};
   return answer_end(&answer);
 }

@@ -238,7 +238,7 @@ says "beta -: the exponent is too uncertain to print: an interval of ± 2 or wid
 withheld=$(awk '$NF == "-" && /from_2/ {n += $0 ~ /from_2 +[0-9]+ +- /} END {print n}' out)
 expect 0 "$clast" compare small.db small.db -Q beta_masses_from_2
 same "$(grep -c ' 3  *3  *[0-9]*  *-  *-  *-$' out)" "$withheld" "exponents that a comparison does not have either"
-says "clast: beta_masses_from_2 -: the exponent is too uncertain to print: an interval of ± 2 or wider: point"
+says "clast: beta_masses_from_2 -: the exponent is too uncertain to print: an interval of ± 2 or wider"
 expect 0 "$clast" compare small.db small.db -Q beta
 says "\`-Q beta_masses_from_2\` takes lighter fragments, too"
 expect 64 "$clast" map small.db none.png -x strain -y angle -Q beta
@@ -273,7 +273,7 @@ two_scenes scenes.db
 expect 0 "$clast" estimates scenes.db --csv # two scenes are told apart, as in the table for people
 same "$(python -c 'import csv; print(*sorted({(r["scene"], r["charge_energy"] != "") for r in csv.DictReader(open("out"))}))')" "('disc-collision', False) ('disc-explosion', True)" "scenes of points"
 expect 64 "$clast" map scenes.db m.png
-says "no two varied inputs are numbers in all points: -x energy -y diameter draws the 4 of 6 points that have both"
+says "no two varied inputs have numbers in all points: name two with -x and -y, and the points that have both are drawn:"
 expect 0 "$clast" map scenes.db scenes.svg -x energy -y diameter
 expect 64 "$clast" map scenes.db m.png -x energy -y speed
 says "take two inputs that the same points have"
