@@ -19,6 +19,7 @@ static const double PLATEAU = 0.2, PLATEAU_RANGE = 0.03; /* a plateau is wider, 
 enum { PLATEAU_RUNS = 60 };
 static const double CHECKED = 0.25;  /* an interval that is narrower is checked by the places outside */
 static const double OTHER_SIDE = 2;  /* standard errors of a place on the other side, which is looked at again */
+enum { ALONE = 3 };                  /* runs of a place whose own scatter counts there, too */
 static const double SEVERAL = 0.998; /* confidence of each part of a response that crosses several times */
 
 const char *const crossing_kind_names[] = {"crossing", "above", "below", "several", "plateau", "open", NULL};
@@ -31,6 +32,7 @@ struct place { /* the runs at one x */
   bool first;      /* of a block of the curve */
   double variance; /* of one run */
   double pure;     /* the same from the scatter within places alone */
+  double own;      /* the same from the scatter of this place */
   double weight;   /* n / variance, with the largest variance of the neighbourhood */
 };
 
@@ -154,6 +156,7 @@ static void weigh(struct response *response) {
   for (size_t i = 0; i < count; i++) {
     place[i].variance = variance_at(response, i, false) + rounding;
     place[i].pure = variance_at(response, i, true) + rounding;
+    place[i].own = place[i].squares / fmax(place[i].n - 1, 1) + rounding;
   }
   for (size_t i = 0; i < count; i++) {
     double variance = 0;
@@ -290,23 +293,34 @@ static bool is_above(const struct response *response) {
   return all.sum > 0;
 }
 
+/* The mean of a place in standard errors by the scatter of its runs alone, so that OTHER_SIDE is as sure as the parts
+ * of a response that crosses several times. Where nothing breaks, all runs are equal, and the variance that neighbours
+ * share is far too large. */
+static double alone(const struct place *place) {
+  if (place->n < ALONE)
+    return 0;
+  return place->mean * sqrt(place->n / place->own) * OTHER_SIDE / gsl_cdf_tdist_Pinv((1 + SEVERAL) / 2, place->n - 1);
+}
+
 /* The place that is farthest from where the answer has it, in standard errors: on the wrong side of the crossing, or of
  * the level when nothing crosses. False: there is none. */
 static bool find_other_side(const struct response *response, const struct crossing *out, size_t *place) {
   double most = 0;
   for (size_t i = 0; i < response->count; i++) {
     const double x = response->place[i].x, after = x >= out->high ? 1 : x <= out->low ? -1 : 0;
-    const double side = out->kind == CROSSING_FOUND   ? after * (out->rising ? 1 : -1)
-                        : out->kind == CROSSING_ABOVE ? 1
-                                                      : -1;
-    struct stretch alone = {0};
-    const double z = -side * add_place(response, i, &alone);
+    const double side = out->kind == CROSSING_ABOVE   ? 1
+                        : out->kind == CROSSING_BELOW ? -1
+                                                      : after * (out->rising ? 1 : -1);
+    struct stretch pooled = {0};
+    const double of_place = is_share(response) ? 0 : -side * alone(&response->place[i]);
+    const double z = fmax(-side * add_place(response, i, &pooled), of_place);
     if (z > most) {
       most = z;
       *place = i;
     }
   }
-  return most > (is_share(response) && out->kind != CROSSING_FOUND ? 0 : OTHER_SIDE);
+  const bool none = out->kind == CROSSING_ABOVE || out->kind == CROSSING_BELOW;
+  return most > (is_share(response) && none ? 0 : OTHER_SIDE);
 }
 
 /* The answer waits while a place contradicts it, as a second crossing would: the next runs are there. */
@@ -316,6 +330,7 @@ static void doubt(const struct response *response, struct crossing *out) {
   if (!find_other_side(response, out, &i))
     return;
   out->contradicted = true;
+  out->contradiction = place[i].x;
   for (int k = 0; k < CROSSING_PLACES; k++)
     out->next[k] = place[i].x;
   out->next[0] = i > 0 ? (place[i - 1].x + place[i].x) / 2 : place[i].x;
@@ -338,7 +353,7 @@ static void tell_kind(const struct response *response, struct crossing *out) {
     out->kind = CROSSING_PLATEAU;
   else
     out->kind = out->low < 0 || out->high > 1 ? CROSSING_OPEN : CROSSING_FOUND;
-  if (out->kind == CROSSING_FOUND ? out->high - out->low < CHECKED : out->kind <= CROSSING_BELOW)
+  if (out->kind == CROSSING_FOUND ? out->high - out->low < CHECKED : out->parts < 2 && out->kind != CROSSING_PLATEAU)
     doubt(response, out);
 }
 

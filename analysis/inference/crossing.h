@@ -44,10 +44,11 @@ struct crossing {
   enum crossing_kind kind;
   double at, low, high; /* median and 95 % interval; low -0.1 or high 1.1: beyond the bracket */
   bool rising;
-  bool contradicted; /* a place lies on the wrong side of the answer: the next runs are there */
-  size_t n;          /* runs with a result */
-  double share;      /* share of runs above the level at the crossing, if only this share was used; else NaN */
-  size_t parts;      /* of CROSSING_SEVERAL */
+  bool contradicted;    /* a place lies on the wrong side of the answer: the next runs are there */
+  double contradiction; /* that place */
+  size_t n;             /* runs with a result */
+  double share;         /* share of runs above the level at the crossing, if only this share was used; else NaN */
+  size_t parts;         /* of CROSSING_SEVERAL */
   struct crossing_part {
     double low, high;
   } part[CROSSING_PARTS];

@@ -83,6 +83,9 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
     text_append(text, SENTENCE, "%s %s through %s at %s = %s%s (95 %% interval %s to %s).", subject,
                 found->rising ? "rises" : "falls", level, input,
                 find_show_within(find, found->at, found->low, found->high, at), mark, low, high);
+    if (found->contradicted)
+      text_append(text, SENTENCE, " But the runs at %s lie on the other side: there may be another crossing.",
+                  show(find, found->contradiction, low));
     break;
   case CROSSING_ABOVE:
   case CROSSING_BELOW:
@@ -117,6 +120,9 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
                 : found->low < 0                  ? "at %s below %s, or not in the bracket."
                                                   : "at %s above %s, or not in the bracket.",
                 input, found->low < 0 ? high : low);
+    if (found->contradicted)
+      text_append(text, SENTENCE, " The runs at %s lie on the other side than most.",
+                  show(find, found->contradiction, low));
     break;
   }
 }
@@ -189,11 +195,13 @@ static status print_bins(const struct find *find, bool quiet, struct error *erro
   size_t count;
   bool any_weak = false, all_one = false, holds = false;
   const struct sample_range range = sample_range(find->quantity.row);
-  char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 8], above[128];
+  char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 40], above[128];
   TRY(make_bins(find, bins, &count, error));
   show_level(find, text);
   snprintf(from, sizeof from, "%s from", find->input->path);
-  snprintf(of, sizeof of, "mean %s", find->quantity.row->path);
+  const struct field real = find_level_row(find);
+  const char *unit = field_shown_unit(&real);
+  snprintf(of, sizeof of, *unit ? "mean %s [%s]" : "mean %s", find->quantity.row->path, unit);
   snprintf(above, sizeof above, "share above %s", text);
   TABLE table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){from, "to", "runs", of, above, NULL});

@@ -174,6 +174,31 @@ static void a_place_that_contradicts_is_looked_at(void **state) {
   assert_true(!found.contradicted && crossing_is_answer(&found, 0.2));
 }
 
+/* Nothing breaks at the first place, so all of its runs are 0; elsewhere a maximum falls towards the level, 1.5, and
+ * scatters much. The scatter of the neighbours would hide the first place. 6 runs there prove no crossing, but the
+ * answer is not "above the level", and the next runs are there. With 24 runs the response rises at the low end. */
+static void a_place_of_equal_runs_keeps_its_own_scatter(void **state) {
+  (void)state;
+  for (int last = 0; last < 2; last++) { /* 2.5: still above the level, or 0.5 */
+    const double means[8] = {0, 8, 18, 11, 7, 4, 3, last ? 0.5 : 2.5}, scatter[8] = {0, 8, 9, 3, 1, 0.6, 0.4, 0.2};
+    for (int zeros = 6; zeros <= 24; zeros += 18) {
+      double x[52], y[52];
+      const int n = zeros + 28;
+      for (int i = 0; i < n; i++) {
+        const int place = i < zeros ? 0 : 1 + (i - zeros) / 4;
+        x[i] = place / 7.0;
+        y[i] = means[place] + (i % 2 ? 1 : -1) * scatter[place];
+      }
+      const struct crossing found = find((size_t)n, x, y, 1.5, NAN);
+      assert_int_equal(found.kind, CROSSING_OPEN);
+      if (zeros == 6)
+        assert_true(found.contradicted && found.contradiction == 0 && found.next[1] == 0);
+      else
+        assert_true(found.rising && found.high < 0.5);
+    }
+  }
+}
+
 static void rounds_grow_by_a_sixth(void **state) {
   (void)state;
   const struct crossing found = {.next = {0.1, 0.2, 0.3, 0.4}};
@@ -199,6 +224,7 @@ int main(void) {
       cmocka_unit_test(plateau_of_few_places),
       cmocka_unit_test(runs_without_results),
       cmocka_unit_test(a_place_that_contradicts_is_looked_at),
+      cmocka_unit_test(a_place_of_equal_runs_keeps_its_own_scatter),
       cmocka_unit_test(rounds_grow_by_a_sixth),
       cmocka_unit_test(runs_for_a_width),
   };

@@ -52,6 +52,10 @@ static double asymmetric(double u, double width) {
 static double jump_and_rise(double u, double width) {
   return u < 0 ? -0.3 : 0.7 * (1 - exp(-u / width));
 }
+/* Nothing breaks below the crossing; then the largest value, which falls to little above the level. */
+static double peak(double u, double width) {
+  return u < 0 ? -0.1 : 0.03 + 0.8 * exp(-u / width);
+}
 /* Without a single crossing. */
 static double above(double u, double width) {
   return 0.6 + width * u;
@@ -67,7 +71,7 @@ static double plateau(double u, double width) {
 }
 
 /* A run about this mean. */
-enum noise { NORMAL, SKEWED, LESS, MORE, HEAVY, MODES };
+enum noise { NORMAL, SKEWED, LESS, MORE, HEAVY, MODES, QUIET };
 
 struct law {
   const char *name;
@@ -121,6 +125,7 @@ static const struct law others[] = {
     {"logistic 0.1, heavy tails 10 %", logistic, 0.1, HEAVY, 0.1, false},
     {"two modes, Gompertz 0.1, share", gompertz, 0.1, MODES, 0.02, true},
     {"two modes, Gompertz 0.2, mean", gompertz, 0.2, MODES, 0.05, false},
+    {"nothing, then a peak, 30 %", peak, 0.1, QUIET, 0.3, false},
 };
 
 static const struct law no_single_crossing[] = {
@@ -160,6 +165,7 @@ static void run_at(struct case_of_law *c, double x) {
   case LESS: y += law->scatter * (0.2 + 3 * fabs(u)) * normal(c); break;
   case MORE: y += law->scatter * (0.2 + 2 * exp(-u * u / 0.01)) * normal(c); break;
   case HEAVY: y += law->scatter * normal(c) / sqrt(-log(uniform(c))); break; /* Student, 2 degrees of freedom */
+  case QUIET: y += u < 0 ? 0 : law->scatter * (fabs(mean) + 0.1) * normal(c); break;
   case MODES: y = (uniform(c) < 0.5 + mean ? 0.5 : -0.5) + law->scatter * normal(c); break;
   }
   c->x[c->runs] = x;
