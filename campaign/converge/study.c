@@ -81,6 +81,13 @@ size_t study_reference(const struct study_ladder *ladder) {
   return finest;
 }
 
+const struct study_ladder *study_stepped(const struct study *study) {
+  for (size_t i = 0; i < study->ladder_count; i++)
+    if (!isnan(study->ladder[i].levels.level[0].step))
+      return &study->ladder[i];
+  return NULL;
+}
+
 static void find_level(const struct study_ladder *ladder, size_t quantity, bool share, size_t l, size_t n,
                        struct convergence_row *row) {
   const struct ladder_level *level = &ladder->levels.level[l];

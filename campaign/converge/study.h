@@ -96,6 +96,8 @@ status study_is_smaller(const struct study_ladder *ladder, const struct study_fo
 void study_law(const struct study *study, const struct study_ladder *ladder, size_t quantity, struct limit_law *law,
                size_t *place, size_t count, struct limit_point *points);
 
+/* The first knob whose levels have a step. NULL: there is none. */
+const struct study_ladder *study_stepped(const struct study *study);
 /* Index of the level that the others are compared with. */
 size_t study_reference(const struct study_ladder *ladder);
 /* Reads the values of a ladder's runs from the store. */
@@ -127,9 +129,8 @@ status study_print_knobs(const struct engine_kind *kind, enum table_format forma
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
  * programs the rows of convergence_table. */
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
-/* Of the first scene, which the title names by its point, and quantity. Draws the levels of the first knob that has a
- * step, with law, limit and band, over the step; without such a knob the levels over the processor time of a run, one
- * curve per knob. */
+/* Of the first scene, which the title names by its point, and quantity: draws the levels of study_stepped() over their
+ * step, with law, limit and band. */
 status study_print_picture(const struct study *study, const char *path, struct error *error);
 
 /* ---- study_request.c ---- */

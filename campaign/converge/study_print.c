@@ -568,137 +568,65 @@ status study_print(const struct study *study, enum table_format format, bool qui
   return STATUS_OK;
 }
 
-/* ---- the picture: results over the step, or over cost ---- */
+/* ---- the picture: the levels of a knob over its step, the law with its band, and the limit at 0 ---- */
 
-enum { CURVES = PICTURE_SERIES, MARKS = LIMITS_STUDY_KNOBS * KNOB_LEVELS }; /* more marks than steps of a law */
-
-struct drawing {
-  struct study_found found[LIMITS_STUDY_KNOBS];
-  struct picture_mean means[CURVES][MARKS];
-  struct picture_curve curves[CURVES];
-  size_t count;
-  bool doubtful[LIMITS_STUDY_KNOBS][KNOB_LEVELS];
-};
-
-/* The mean of a level with its interval. */
-static struct picture_mean mean_at(double x, const struct convergence_row *row, bool doubtful) {
-  const double low = row->mean - row->half_width, high = row->mean + row->half_width;
-  return (struct picture_mean){x, row->mean, low, high, NAN, doubtful};
-}
-
-/* Adds a mark of the level to the last curve, in order of cost. */
-static void add_mark(struct drawing *drawing, const struct convergence_row *row, bool doubtful) {
-  struct picture_mean *means = drawing->means[drawing->count];
-  struct picture_curve *curve = &drawing->curves[drawing->count];
-  const struct picture_mean mark = mean_at(row->cpu, row, doubtful);
-  if (!isfinite(mark.x) || !isfinite(mark.y) || curve->count == MARKS)
-    return;
-  size_t place = curve->count++;
-  for (; place > 0 && means[place - 1].x > mark.x; place--)
-    means[place] = means[place - 1];
-  means[place] = mark;
-}
-
-/* A curve of the levels of a knob. */
-static void add_curve(struct drawing *drawing, size_t knob) {
-  const struct study_found *found = &drawing->found[knob];
-  drawing->curves[drawing->count] = (struct picture_curve){.label = found->limit.knob,
-                                                           .mean = drawing->means[drawing->count]};
-  for (size_t l = 0; l < found->count; l++)
-    add_mark(drawing, &found->rows[l], drawing->doubtful[knob][l]);
-  drawing->count += drawing->curves[drawing->count].count > 0;
-}
-
-/* The first knob whose levels have a step. `count`: there is none. */
-static size_t stepped_knob(const struct study *study, size_t count) {
-  size_t i = 0;
-  while (i < count && isnan(study->ladder[i].levels.level[0].step))
-    i++;
-  return i;
-}
-
-/* The levels of a ladder over the step, the law with its band, and the limit at 0. */
-static void draw_law(const struct study *study, size_t knob, struct drawing *drawing, char label[2][120]) {
+status study_print_picture(const struct study *study, const char *path, struct error *error) {
   enum { STEPS = 40 };
-  const struct study_ladder *ladder = &study->ladder[knob];
-  const struct study_found *found = &drawing->found[knob];
+  const struct study_ladder *ladder = study_stepped(study);
+  const struct engine_kind *kind = ladder->base->kind;
+  const struct knob *knob = ladder->levels.knob;
+  const struct sample_range range = views_range(study->quantity[0].column);
+  struct picture_mean levels[KNOB_LEVELS], band[STEPS + 1];
   struct limit_point points[STEPS + 1];
   struct limit_law law;
-  size_t place[KNOB_LEVELS];
+  struct study_found found;
+  struct ask_doubts doubts, sum = {0};
+  size_t place[KNOB_LEVELS], count = 0;
   double coarsest = 0;
-  struct picture_mean *levels = drawing->means[0], *curve = drawing->means[1];
-  for (size_t l = found->count; l-- > 0;) {
-    const struct convergence_row *row = &found->rows[l];
+  STORE store = NULL;
+  TRY(store_open_reader(study->limits.store, &store, error));
+  study_find(study, ladder, 0, &found);
+  for (size_t l = found.count; l-- > 0;) {
+    const struct convergence_row *row = &found.rows[l];
     if (row->n == 0)
       continue;
+    TRY(read_doubts(&(struct printing){.study = study, .store = store}, ladder, l, 0, &doubts, error));
+    ask_doubts_add(&sum, &doubts);
     coarsest = row->step;
-    levels[drawing->curves[0].count++] = mean_at(row->step, row, drawing->doubtful[knob][l]);
+    levels[count++] = (struct picture_mean){row->step,
+                                            row->mean,
+                                            row->mean - row->half_width,
+                                            row->mean + row->half_width,
+                                            NAN,
+                                            doubts.doubtful > 0};
   }
   for (size_t i = 0; i <= STEPS; i++)
     points[i].step = coarsest * (double)i / STEPS;
   study_law(study, ladder, 0, &law, place, STEPS + 1, points);
-  snprintf(label[0], sizeof label[0], "levels of %s, mean over seeds with its 95 %% interval", found->limit.knob);
+  for (size_t i = 0; i <= STEPS; i++)
+    band[i] = (struct picture_mean){points[i].step, points[i].mean.value, points[i].mean.low, points[i].mean.high, NAN,
+                                    false};
+
+  char label[2][120], title[1200], point[512], y[CHARTS_LABEL], x[200], unit[64];
+  snprintf(label[0], sizeof label[0], "levels of %s, mean over seeds with its 95 %% interval", knob->name);
   snprintf(label[1], sizeof label[1], "law with its 95 %% band; at step 0 the limit, %.3g (%.3g to %.3g)",
            law.limit.value, law.limit.low, law.limit.high);
-  drawing->curves[0].label = label[0];
-  drawing->curves[0].mean = levels;
-  drawing->count = 1;
-  if (law.verdict != LIMIT_SEEN)
-    return;
-  for (size_t i = 0; i <= STEPS; i++)
-    curve[i] = (struct picture_mean){points[i].step, points[i].mean.value, points[i].mean.low, points[i].mean.high, NAN,
-                                     false};
-  drawing->curves[1] = (struct picture_curve){.label = label[1], .count = STEPS + 1, .mean = curve, .band = true};
-  drawing->count = 2;
-}
-
-status study_print_picture(const struct study *study, const char *path, struct error *error) {
-  OWNED struct drawing *drawing = NULL;
-  STORE store = NULL;
-  TRY(memory_array(&drawing, 1, sizeof *drawing, "the picture of a study", error));
-  TRY(store_open_reader(study->limits.store, &store, error));
-  const struct printing printing = {.study = study, .store = store};
-  size_t knobs = 0;
-  TRY(find_shown(&printing, 0, 0, &knobs, drawing->found, error));
-  for (size_t i = 0; i < knobs; i++)
-    for (size_t l = 0; l < drawing->found[i].count; l++) {
-      struct ask_doubts doubts;
-      TRY(read_doubts(&printing, &study->ladder[i], l, 0, &doubts, error));
-      drawing->doubtful[i][l] = doubts.doubtful > 0;
-    }
-  struct ask_doubts sum;
-  TRY(sum_doubts(&printing, knobs, 1, &sum, error));
-  const size_t stepped = stepped_knob(study, knobs);
-  char label[2][120];
-  if (stepped < knobs)
-    draw_law(study, stepped, drawing, label);
-  for (size_t i = 0; stepped == knobs && i < knobs && drawing->count < CURVES; i++)
-    add_curve(drawing, i);
-
-  char title[1200], point[512], y[CHARTS_LABEL], x[200] = "processor time of a run (s)", unit[64] = "";
+  const struct picture_curve curves[] =
+      {{.label = label[0], .count = count, .mean = levels, .range = &range},
+       {.label = label[1], .count = STEPS + 1, .mean = band, .band = true, .range = &range}};
   charts_label(study->quantity[0].name, y);
-  design_axis_show_point(study->varied_count, study->varied, study->ladder[0].base->inputs, point, sizeof point);
-  snprintf(title, sizeof title, "%s%s%s: %s%s", study->ladder[0].base->name, *point ? ", " : "", point, y,
-           stepped < knobs ? " and its limit" : " over the cost of a run");
+  design_axis_show_point(study->varied_count, study->varied, ladder->base->inputs, point, sizeof point);
+  snprintf(title, sizeof title, "%s%s%s: %s and its limit", ladder->base->name, *point ? ", " : "", point, y);
   if (study->quantity[0].row)
     TRY(charts_axis(store, study->quantity[0].column, y, error)); /* with its unit */
-  if (stepped < knobs) {
-    const struct knob *knob = study->ladder[stepped].levels.knob;
-    const char *input = knob->inputs[0].path;
-    const struct field *row = field_find(study->ladder[stepped].base->kind->inputs, input, NULL);
-    field_label_unit(row ? row->unit : NULL, unit, sizeof unit);
-    snprintf(x, sizeof x, knob->step_power == 1 ? "step: %s" : "step: %s to the power %.3g", input, knob->step_power);
-    if (*unit)
-      text_append(x, sizeof x, knob->step_power == 1 ? " (%s)" : " (%s to this power)", unit);
-  }
-  const struct picture_page page = charts_page(path, NULL);
-  char caption[CHARTS_LABEL];
-  snprintf(caption, sizeof caption, "A mark is a level of a knob%s",
-           stepped < knobs ? "" : ": mean over seeds with its 95 % interval");
+  const char *input = knob->inputs[0].path;
+  field_label_unit(field_find(kind->inputs, input, NULL)->unit, unit, sizeof unit);
+  snprintf(x, sizeof x, knob->step_power == 1 ? "step: %s" : "step: %s to the power %.3g", input, knob->step_power);
+  if (*unit)
+    text_append(x, sizeof x, knob->step_power == 1 ? " (%s)" : " (%s to this power)", unit);
+  char caption[CHARTS_LABEL] = "A mark is a level of a knob";
   charts_doubts(NULL, &sum, caption, sizeof caption);
-  const struct picture_words words = {title, caption, x, y};
-  const struct sample_range range = views_range(study->quantity[0].column);
-  for (size_t i = 0; i < drawing->count; i++)
-    drawing->curves[i].range = &range;
-  return picture_curves(&page, &words, drawing->count, drawing->curves, error);
+  const struct picture_page page = charts_page(path, NULL);
+  return picture_curves(&page, &(struct picture_words){title, caption, x, y}, law.verdict == LIMIT_SEEN ? 2 : 1, curves,
+                        error);
 }

@@ -226,6 +226,11 @@ status study_request_read(const struct study_request *request, const char *path,
     for (size_t i = 0; i < request->knobs.count; i++)
       TRY(add_item(subject, subject->scenes[s], request->knobs.items[i], error));
   }
+  if (request->picture && study->ladder_count && !study_stepped(study))
+    return status_fail(
+        error, STATUS_USAGE,
+        "--picture draws the levels of a knob over its step, and none of these has one: leave it out, or "
+        "add such a knob (`clast converge --list`)");
   return study->ladder_count
              ? STATUS_OK
              : status_fail(error, STATUS_CONTENT, "no knob applies to this scene (`clast converge --list`)");

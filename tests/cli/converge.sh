@@ -550,7 +550,9 @@ expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off
 prints "disc-explosion, strain 3 %, quantity largest_fraction"
 expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --csv
 same "$(cut -d, -f1 out | sort -u | tr '\n' ' ')" "0.01 0.03 threshold_strain " "inputs of the levels"
-expect 0 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --picture each.svg
+expect 64 "$clast" converge each.yaml --knob integrator --seeds 2 --within off --picture each.svg
+says "--picture draws the levels of a knob over its step"
+expect 0 "$clast" converge each.yaml --knob time_step --seeds 2 --within off --picture each.svg
 grep -q 'disc-explosion, strain 1 %: ' each.svg || fail "the title does not name the point"
 says "a picture is of the first point, which its title names"
 # --set of a varied input: one point is left, not the same one twice. It tells how much there is to do.
@@ -669,4 +671,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 172
+done_after 173
