@@ -66,40 +66,13 @@ static struct scene *scene_of(const struct fit *fit, const double *z, struct err
   return campaign_point_scene_from(fit->observed->shots[fit->shot].scene, campaign, values, error);
 }
 
-/* Tells of runs of the first ensemble with seeds that all points share, which fits before 2026-11-30 made. They are
- * left out, so that a fit answers the same whatever else the store has. */
-static void tell_left_out(const struct fit *fit, struct store *store) {
-  struct campaign shared = *fit->campaign;
-  struct error invalid;
-  size_t runs = 0;
-  shared.independent = false;
-  for (size_t j = 0; j < fit->members; j++) {
-    SCENE scene = scene_of(fit, fit->place + j * fit->inputs, &invalid);
-    for (size_t r = 0; scene && r < fit->replicates; r++) {
-      uint8_t identity[16];
-      scene_identity(scene, campaign_seed(&shared, scene, (int64_t)r), identity);
-      runs += store_has_run(store, identity);
-    }
-  }
-  char text[2 * FIELD_TEXT_SIZE];
-  snprintf(text, sizeof text,
-           "%.200s has %zu run%s of the first points with seeds that all points share; left out, as each point has "
-           "seeds of its own now. `seeds: {independent: false}` in the campaign takes them",
-           fit->campaign->store, runs, text_plural((int64_t)runs));
-  if (runs && fit->rule.note)
-    fit->rule.note(fit->rule.note_context, text);
-}
-
 static status next_round(void *context, const struct scheduler *scheduler, struct campaign **campaign,
                          struct error *error) {
   struct fit *fit = context;
   if (fit->phase == FIT_DONE)
     return STATUS_OK;
-  if (fit->rounds == 0 && fit->shot == 0) {
+  if (fit->rounds == 0 && fit->shot == 0)
     TRY(find_resolution(fit, scheduler->store, error));
-    if (!fit->campaign->independent_given)
-      tell_left_out(fit, scheduler->store);
-  }
   return make_campaign(fit, campaign, error);
 }
 
