@@ -85,10 +85,10 @@ struct answer ask_campaign_documents(struct store *store, struct error *error);
  * path, value there (SI; NULL: the input does not apply there; of the same campaign, else of the last), the scene of
  * its point (JSON), and whether it is the same campaign. */
 struct answer ask_campaign_hidden_inputs(struct store *store, int64_t campaign, int64_t point, struct error *error);
-/* The same of all campaigns of one scene, as after a merge; values that differ only with a name follow from it, as in
- * tables. A row per input and point in which it applies, of the first
- * points of campaigns, or of the points of one campaign with the same varied inputs: engine, path, scene of the point
- * (JSON). */
+/* The same of all campaigns of one scene, as after a merge. Values of one name, such as a rock's, are compared with
+ * each other only: the others follow from their names. A row per input and point in which it applies, of the first
+ * points of campaigns with each set of names, or of the points of one campaign with the same varied inputs: engine,
+ * path, scene of the point (JSON). */
 struct answer ask_campaign_different_inputs(struct store *store, struct error *error);
 
 /* A row per campaign: runs, safe, warned, refused, runs given up without a result, the largest energy_error of usable

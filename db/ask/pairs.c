@@ -332,25 +332,42 @@ int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *want
   return pairs->side[side].missing;
 }
 
-enum { NAMED = 5 }; /* most inputs with values in a message */
+enum { NAMED = 5 /* most inputs with values in a message */, NAME_SETS = 20 /* most that are compared */ };
+
+/* The next input, "path = value", of a list; NULL: none. */
+static const char *next_input(const char *list, const char *input, size_t *length) {
+  if (input && !input[*length])
+    return NULL;
+  input = input ? input + *length + 1 : list;
+  *length = strcspn(input, (const char[]){SEPARATOR, '\0'});
+  return *length ? input : NULL;
+}
 
 struct fixed {         /* of a side */
-  struct scene *scene; /* of its first point */
-  char *varied;        /* paths that change within it: axes of the store, and what its points differ in */
+  struct scene *scene; /* of its first point, or of the chosen one */
+  char *varied;        /* paths: axes of the store, and those in which these points differ */
   char *campaign;      /* name of the chosen one, or of the first of those that have it as their name */
 };
 
-static status read_fixed(const struct side *side, struct fixed *fixed, struct error *error) {
+struct apart { /* the inputs that differ */
+  const struct field **rows;
+  size_t count, room;
+  FILE *out;
+};
+
+/* point: 0: all. */
+static status read_fixed(const struct side *side, int64_t point, struct fixed *fixed, struct error *error) {
   STORE store = NULL;
   TRY(store_open_reader(side->path, &store, error));
   TRY(ask_choose(store, &side->choice, error));
   ANSWER answer = answer_to(
       store, error,
-      "WITH its AS MATERIALIZED (SELECT DISTINCT point_id FROM runs WHERE counts) SELECT (SELECT scene FROM point "
-      "WHERE "
+      "WITH its AS MATERIALIZED (SELECT DISTINCT point_id FROM runs WHERE counts AND %lld IN (0, point_id)) SELECT "
+      "(SELECT scene FROM point WHERE "
       "point_id = (SELECT min(point_id) FROM its)), (SELECT group_concat(path, ' ') FROM (SELECT path FROM axis UNION "
       "SELECT path FROM point_input JOIN its USING (point_id) GROUP BY path HAVING count(DISTINCT value) > 1 OR "
-      "count(*) < (SELECT count(*) FROM its))), (SELECT name FROM campaign ORDER BY campaign_id)");
+      "count(*) < (SELECT count(*) FROM its))), (SELECT name FROM campaign ORDER BY campaign_id)",
+      (long long)point);
   if (answer_next(&answer)) {
     TRY(scene_parse_json("stored scene", answer_text(&answer, 0), &fixed->scene, error));
     fixed->varied = strdup(answer_text(&answer, 1));
@@ -360,47 +377,101 @@ static status read_fixed(const struct side *side, struct fixed *fixed, struct er
   return fixed->varied && fixed->campaign ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
 
-/* Writes both values of an input that differs, that no side varies, and that follows from no other; counts it. */
-static void write_input(const struct fixed side[2], const struct field *row, size_t *count, FILE *out) {
+/* Writes both values of an input that differs, that no side varies, and that follows from no other; notes it. */
+static status write_input(const struct fixed side[2], const struct field *row, struct apart *apart,
+                          struct error *error) {
   char shown[2][FIELD_TEXT_SIZE] = {"none", "none"};
   bool follows = true;
+  for (size_t i = 0; i < apart->count; i++)
+    if (apart->rows[i] == row)
+      return STATUS_OK;
   for (int k = 0; k < 2; k++) {
     const struct scene *scene = side[k].scene;
     struct field_value value;
     if (text_has_word(side[k].varied, row->path))
-      return;
+      return STATUS_OK;
     if (!field_is_active(scene->kind->inputs, row, scene->inputs))
       continue;
     follows = follows && (row->flags & FIELD_DERIVED) && scene_follows(scene, row);
     field_get(row, scene->inputs, &value);
     field_show(row, &value, shown[k], sizeof shown[k]);
   }
-  if (!follows && strcmp(shown[0], shown[1]) != 0 && (*count)++ < NAMED)
-    fprintf(out, "%s%s (%s, %s)", ftell(out) > 0 ? ", " : "", row->path, shown[0], shown[1]);
+  if (follows || strcmp(shown[0], shown[1]) == 0)
+    return STATUS_OK;
+  TRY(grow_or_fail(&apart->rows, &apart->room, apart->count + 1, sizeof *apart->rows, "the inputs", error));
+  apart->rows[apart->count++] = row;
+  if (apart->count <= NAMED)
+    fprintf(apart->out, "%s%s (%s, %s)", ftell(apart->out) > 0 ? ", " : "", row->path, shown[0], shown[1]);
+  return STATUS_OK;
 }
 
-status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error) {
-  FILE *out = text_open(text);
+/* Compares a point of each side; 0 and 0: what is the same in all points of a side. */
+static status compare_points(const struct ask_pairs *pairs, const int64_t points[2], struct apart *apart,
+                             struct error *error) {
   struct fixed side[2] = {{0}};
   status code = STATUS_OK;
-  size_t count = 0;
   for (int k = 0; k < 2 && !code; k++)
-    code = read_fixed(&pairs->side[k], &side[k], error);
-  const char *of[2] = {pairs->side[0].choice.campaign, pairs->side[1].choice.campaign};
-  if (!code && of[0] && of[1] && !strcmp(of[0], of[1]) && strcmp(side[0].campaign, side[1].campaign) != 0)
-    fprintf(out, "campaign (%s, %s)", side[0].campaign, side[1].campaign); /* of one number */
-  if (!code && strcmp(side[0].scene->name, side[1].scene->name) != 0)
-    fprintf(out, "%sscene (%s, %s)", ftell(out) > 0 ? ", " : "", side[0].scene->name, side[1].scene->name);
-  for (size_t i = 0; !code && side[0].scene->kind == side[1].scene->kind && i < side[0].scene->kind->inputs->count; i++)
-    write_input(side, &side[0].scene->kind->inputs->rows[i], &count, out);
-  if (count > NAMED)
-    fprintf(out, " and %zu more inputs", count - NAMED);
+    code = read_fixed(&pairs->side[k], points[k], &side[k], error);
+  if (!code && ftell(apart->out) == 0) {
+    const char *of[2] = {pairs->side[0].choice.campaign, pairs->side[1].choice.campaign};
+    if (of[0] && of[1] && !strcmp(of[0], of[1]) && strcmp(side[0].campaign, side[1].campaign) != 0)
+      fprintf(apart->out, "campaign (%s, %s)", side[0].campaign, side[1].campaign); /* of one number */
+    if (strcmp(side[0].scene->name, side[1].scene->name) != 0)
+      fprintf(apart->out, "%sscene (%s, %s)", ftell(apart->out) > 0 ? ", " : "", side[0].scene->name,
+              side[1].scene->name);
+  }
+  const struct field_table *inputs = code ? NULL : side[0].scene->kind->inputs;
+  for (size_t i = 0; !code && side[0].scene->kind == side[1].scene->kind && i < inputs->count; i++)
+    code = write_input(side, &inputs->rows[i], apart, error);
   for (int k = 0; k < 2; k++) {
     scene_free(side[k].scene);
     free(side[k].varied);
     free(side[k].campaign);
   }
-  return text_close(out, text) || code ? code : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+  return code;
+}
+
+/* Of the names among the inputs, such as those of rocks: values that follow from them differ between points. */
+static uint64_t hash_names(const char *list) {
+  uint64_t hash = TEXT_HASH_START;
+  size_t length = 0;
+  for (const char *input = NULL; (input = next_input(list, input, &length));) {
+    const char *end = strstr(input, " = ");
+    if (end && end - input > 5 && strncmp(end - 5, ".name", 5) == 0)
+      hash = text_hash(hash, input, length);
+  }
+  return hash;
+}
+
+/* Compares the first pair with each set of names. */
+static status compare_pairs(const struct ask_pairs *pairs, struct apart *apart, struct error *error) {
+  uint64_t seen[NAME_SETS];
+  size_t sets = 0, i = 0;
+  if (pairs->found == 0)
+    return compare_points(pairs, (const int64_t[]){0, 0}, apart, error);
+  for (; i < pairs->side[0].group_count && sets < NAME_SETS; i++) {
+    const struct group *group = &pairs->side[0].groups[i];
+    size_t at = 0;
+    if (!group->partner)
+      continue;
+    seen[sets] = hash_names(group->list);
+    while (seen[at] != seen[sets])
+      at++;
+    if (at < sets)
+      continue;
+    sets++;
+    TRY(compare_points(pairs, (const int64_t[]){group->point, group->partner->point}, apart, error));
+  }
+  return STATUS_OK;
+}
+
+status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error *error) {
+  struct apart apart = {.out = text_open(text)};
+  const status code = compare_pairs(pairs, &apart, error);
+  if (apart.count > NAMED)
+    fprintf(apart.out, " and %zu more inputs", apart.count - NAMED);
+  free(apart.rows);
+  return text_close(apart.out, text) || code ? code : status_fail(error, STATUS_MEMORY, "no memory for the inputs");
 }
 
 status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error *error) {
@@ -423,15 +494,6 @@ status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error 
 }
 
 enum { LOOKED_AT = 300 }; /* points of a side */
-
-/* The next input, "path = value", of a list; NULL: none. */
-static const char *next_input(const char *list, const char *input, size_t *length) {
-  if (input && !input[*length])
-    return NULL;
-  input = input ? input + *length + 1 : list;
-  *length = strcspn(input, (const char[]){SEPARATOR, '\0'});
-  return *length ? input : NULL;
-}
 
 static bool has_input(const struct side *side, const char *input, size_t length) {
   for (size_t i = 0; i < side->group_count && i < LOOKED_AT; i++) {

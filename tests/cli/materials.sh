@@ -115,6 +115,32 @@ sed 's/name: mix/name: back/; s/\[basalt.*\]/[.\/thin.yaml, basalt]/' rocks/mix.
 expect 0 "$clast" run rocks/back.yaml --quiet
 expect 0 "$clast" merge mixed.db mix.db back.db
 same "$(sqlite3 mixed.db "select group_concat(path) from axis") $(grep -c 'differ in' err)" "target.material.name 0" "inputs of merged rocks"
+# Where files of one name give other values, these tell the rocks apart: in merges in any order, of two or three stores.
+merged() { # merged TARGET SOURCE...: the inputs, and those that it warns of
+  "$clast" merge "$@" >out 2>err || fail "merge $*"
+  echo "$(sqlite3 "$1" "select group_concat(path, ' ') from axis") ($(tr -s '\n ' ' ' <err | sed -n 's/.* differ in \([^:]*\):.*/\1/p'))"
+}
+mkdir dense weak
+cp rocks/{mix,own,thin}.yaml dense
+sed 's/^density: .*/density: 2.9 g\/cm^3/' rocks/own.yaml >dense/own.yaml
+sed 's/^  m: .*/  m: 7/' rocks/own.yaml >weak/own.yaml
+cp rocks/thin.yaml weak
+for rock in dense weak; do
+  cp rocks/mix.yaml $rock/mix.yaml
+  expect 0 "$clast" run $rock/mix.yaml --quiet --store $rock-form.db
+  sed "s/name: mix/name: $rock/" rocks/mix.yaml >$rock/mix.yaml
+  expect 0 "$clast" run $rock/mix.yaml --quiet --store $rock.db
+done
+density=target.material.density name=target.material.name m=target.material.weibull.m
+same "$(merged pair.db mix.db dense.db)" "$density $name ($density)" "inputs of two rocks of one name"
+same "$(merged turned.db dense.db mix.db)" "$density $name ($density)" "the other order"
+same "$(merged mixed.db dense.db)" "$density $name ($density)" "into a store of merged rocks"
+same "$(merged triple.db mix.db dense.db weak.db)" "$density $name $m ($density, $m)" "three rocks of one name"
+same "$(merged forms.db mix.db dense-form.db weak-form.db)" "$density $name $m ($density, $m)" "three forms of one campaign"
+expect 0 "$clast" stats pair.db --by material,density --csv
+same "$(tail -n +2 out | cut -d, -f1,2 | sort | paste -sd ' ')" "basalt,2700 own.yaml,2750 own.yaml,2900 thin.yaml,2200" "means of each rock"
+expect 0 "$clast" compare mix.db dense.db
+tr -s '\n ' ' ' <err | grep -q "a and b also differ in $density (2750 kg/m^3, 2900 kg/m^3) clast:" || fail "compare does not tell the rocks apart"
 
 # A rock is shown by its own name, with the file's; two rocks of one name are refused. A value that a reader expects, once.
 mkdir -p other
@@ -216,4 +242,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 77
+done_after 89
