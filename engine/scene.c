@@ -131,6 +131,26 @@ static void own_name(const char *file, struct document *document, const struct e
   snprintf(name, FIELD_TEXT_SIZE, "%s%s%s", plain ? rock : "", plain ? " - " : "", base);
 }
 
+/* Has the file the keys of a material alone? Else reports all that is wrong with it. */
+static bool check_keys(document_node *root, const struct engine_materials *materials) {
+  OWNED void *unused = memory_small(1, materials->values->size);
+  for (size_t i = 0; i < document_count(root); i++) {
+    const char *key = NULL;
+    bool known = false;
+    document_item(root, i, &key);
+    for (size_t k = 0; key && !known && k < materials->values->count; k++) {
+      const char *path = materials->values->rows[k].path;
+      const size_t word = strcspn(path, ".");
+      known = strlen(key) == word && strncmp(path, key, word) == 0;
+    }
+    if (!key || known || text_is_one_of(key, material_words))
+      continue;
+    field_defaults(materials->values, unused);
+    return document_read(root, materials->values, material_words, unused);
+  }
+  return true;
+}
+
 /* Opens a material's file. On failure *out is NULL. */
 static status open_material(const char *path, const struct engine_materials *materials, struct document **out,
                             struct error *error) {
@@ -138,7 +158,8 @@ static status open_material(const char *path, const struct engine_materials *mat
   if (code == STATUS_MISSING && strstr(path, " - ")) /* as own_name() writes it */
     text_append(error->message, sizeof error->message,
                 ". Tables show a rock as its name - its file's name: give the file alone, with its folder");
-  if (code != STATUS_OK || scene_material_complete(document_root(*out), materials))
+  if (code != STATUS_OK ||
+      (scene_material_complete(document_root(*out), materials) && check_keys(document_root(*out), materials)))
     return code;
   code = document_verdict(*out, error);
   document_free(*out);

@@ -83,6 +83,9 @@ sed 's/like: .*/like: .\/thin.yaml/' rocks/thin.yaml >wrong.yaml
 scene ./wrong.yaml >s.yaml
 expect 65 "$clast" explain ./s.yaml
 says "wrong.yaml:2:7: error: like: only built-in materials can be named here, no files"; one_error
+sed 's/^material:/name:/' rocks/thin.yaml >wrong.yaml
+expect 65 "$clast" explain ./s.yaml
+says "wrong.yaml:1:1: error: name: unknown key; known here are density,"; says "weibull, material, source, sources, like"; one_error
 scene rocks/own.yaml >s.yaml
 density() { "$clast" explain "$@" --json | python -c "
 import json, sys; print(*[r['value'] for r in json.load(sys.stdin) if r['path'] in ('target.material.name', 'target.material.density')])"; }
@@ -242,4 +245,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 89
+done_after 90
