@@ -497,7 +497,7 @@ static void release_plot(struct plot *plot) {
   release(&plot->quantity);
 }
 
-/* Finds the line of this row, or makes it. */
+/* Finds the line of this row, or makes it. Lines of numbers are in their order; others come as the rows do. */
 static status find_line(struct plot *plot, const struct row *row, struct line **found, struct error *error) {
   for (size_t i = 0; i < plot->count; i++) {
     *found = &plot->line[i];
@@ -507,7 +507,10 @@ static status find_line(struct plot *plot, const struct row *row, struct line **
   if (plot->count == MOST_LINES)
     return status_fail(error, STATUS_USAGE, "a chart has at most %d lines: choose a --by with fewer values",
                        MOST_LINES);
-  *found = &plot->line[plot->count++];
+  size_t place = plot->count++;
+  for (; place > 0 && row->input[1] < plot->line[place - 1].first->input[1]; place--)
+    plot->line[place] = plot->line[place - 1];
+  *found = &plot->line[place];
   **found = (struct line){.first = row, .means = memory_small(MOST_MEANS, sizeof *(*found)->means)};
   return STATUS_OK;
 }

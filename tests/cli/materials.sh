@@ -142,6 +142,8 @@ same "$(merged triple.db mix.db dense.db weak.db)" "$density $name $m ($density,
 same "$(merged forms.db mix.db dense-form.db weak-form.db)" "$density $name $m ($density, $m)" "three forms of one campaign"
 expect 0 "$clast" stats pair.db --by material,density --csv
 same "$(tail -n +2 out | cut -d, -f1,2 | sort | paste -sd ' ')" "basalt,2700 own.yaml,2750 own.yaml,2900 thin.yaml,2200" "means of each rock"
+expect 0 "$clast" plot pair.db pair.svg -x material --by density --keep-script
+same "$(grep '^label\[' pair.gp | cut -d= -f3 | tr -dc '0-9\n' | paste -sd ' ')" "2200 2700 2750 2900" "lines in the order of their numbers"
 expect 0 "$clast" compare mix.db dense.db
 tr -s '\n ' ' ' <err | grep -q "a and b also differ in $density (2750 kg/m^3, 2900 kg/m^3) clast:" || fail "compare does not tell the rocks apart"
 
@@ -245,4 +247,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 90
+done_after 92
