@@ -160,11 +160,12 @@ static status judge(const struct choice *choice, const char *what, const char *n
 /* An input of the points with runs that is no axis: says why. */
 static status judge_input(struct store *store, const char *name, const struct choice *choice, struct error *error) {
   char path[NAME] = "";
-  ANSWER found = answer_to(store, error,
-                           "SELECT path, count(DISTINCT value) "
-                           "FROM point p JOIN point_input USING (point_id) WHERE (path = %Q OR path LIKE '%%.' || %Q) "
-                           "AND EXISTS (SELECT 1 FROM run WHERE run.point_id = p.point_id) GROUP BY path LIMIT 1",
-                           name, name);
+  ANSWER found = answer_to(
+      store, error,
+      "SELECT path, count(DISTINCT value) AS kinds FROM point p JOIN point_input USING (point_id) WHERE (path = %Q OR "
+      "path LIKE '%%.' || %Q) AND EXISTS (SELECT 1 FROM run WHERE run.point_id = p.point_id) GROUP BY path ORDER BY "
+      "kinds > 1 DESC, path LIMIT 1",
+      name, name);
   const bool is_input = answer_next(&found);
   if (is_input)
     snprintf(path, sizeof path, "%s", answer_text(&found, 0));

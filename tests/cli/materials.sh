@@ -112,6 +112,8 @@ prints "basalt,"; prints "own.yaml,"; prints "thin.yaml,"
 expect 0 "$clast" run rocks/mix.yaml --quiet
 same "$(sqlite3 mix.db "select count(*) from run")" 6 "runs after the same command again"
 expect 0 "$clast" plot mix.db bars.png -x material
+expect 64 "$clast" stats mix.db --by density # not that of the projectile, which has one value
+says "target.material.density is no axis of this store"
 expect 0 "$clast" check mix.db
 # Values of rocks follow from their names also in a merge whose campaigns begin with other rocks.
 sed 's/name: mix/name: back/; s/\[basalt.*\]/[.\/thin.yaml, basalt]/' rocks/mix.yaml >rocks/back.yaml
@@ -247,4 +249,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 92
+done_after 93
