@@ -70,7 +70,7 @@ build() { # build PRESET [TARGET]
   if ! NINJA_STATUS='[%f/%t] ' watched "build/$1/build.log" '
     split($1, step, /[][\/]/) == 4 && int(10 * step[2] / step[3]) > tenths {
       tenths = int(10 * step[2] / step[3]); print "  " step[2] " of " step[3] " steps"; fflush() }
-    /^npm (ci failed|ERR!)/' \
+    /^npm (pack failed|ERR!)/' \
     cmake --build --preset "$1" -j "$(nproc)" --target "${2:-all}"; then
     grep -E -A12 "^FAILED|error" "build/$1/build.log" >&2
     say "the build failed; all it printed is in build/$1/build.log" >&2
@@ -104,8 +104,8 @@ case "${1:-}" in
   build)
     install_missing $packages $page_packages
     build release
-    if grep -q "^npm ci failed" build/release/build.log; then
-      say "the program is built, but not the page of clast report: $(grep -m1 "^npm ci failed" build/release/build.log)" >&2
+    if grep -q "^npm pack failed" build/release/build.log; then
+      say "the program is built, but not the page of clast report: $(grep -m1 "^npm pack failed" build/release/build.log)" >&2
       exit 69
     fi
     ;;

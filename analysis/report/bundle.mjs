@@ -2,13 +2,22 @@
 // sql.js and the licences of the packages into one file. Its content security policy admits this very script and this
 // very style sheet, by their hashes, and nothing else: no network, no other script, no eval.
 import {createHash} from 'node:crypto';
-import {mkdirSync, readFileSync, readdirSync, writeFileSync} from 'node:fs';
+import {copyFileSync, mkdirSync, readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join, resolve} from 'node:path';
 import {gzipSync} from 'node:zlib';
 
 const [source, packages, page] = process.argv.slice(2).map((path) => resolve(path));
-const {build} = createRequire(join(packages, 'package.json'))('esbuild-wasm');
+const modules = join(packages, 'node_modules');
+const {build} = createRequire(join(packages, 'fetched'))('esbuild-wasm');
+
+// A package with all that it uses, as its authors publish it for pages: no module, though package.json calls it one.
+function published(name) {
+  const script = join(packages, `${name}.cjs`);
+  copyFileSync(join(modules, name, 'build', `${name}.min.js`), script);
+  return script;
+}
+const vega = published('vega');
 
 async function bundle(file) {
   const result = await build({
@@ -16,26 +25,23 @@ async function bundle(file) {
     bundle: true,
     minify: true,
     write: false,
-    metafile: true,
     format: 'iife',
     target: 'es2020',
     charset: 'utf8',
     legalComments: 'none', // all licences stand in the page as a whole
-    nodePaths: [join(packages, 'node_modules')],
+    nodePaths: [modules],
+    alias: {vega, 'vega-util': vega, 'vega-lite': published('vega-lite')},
     external: ['fs', 'path', 'crypto'], // of Node; never reached in a browser
     logLevel: 'error',
   });
-  const text = result.outputFiles[0].text.trim();
-  return {text, inputs: Object.keys(result.metafile.inputs)};
+  return result.outputFiles[0].text.trim();
 }
 
-// "NAME VERSION" and the text of the licence of every package in the bundle; packages with one text share it.
-function licences(inputs) {
-  const names = new Set(inputs.map((path) => path.split('node_modules/').pop()).filter((path, i) => path !== inputs[i])
-    .map((path) => path.split('/').slice(0, path.startsWith('@') ? 2 : 1).join('/')));
+// "NAME VERSION" and the text of the licence of every package; packages with one text share it.
+function licences() {
   const texts = new Map();
-  for (const name of [...names].sort()) {
-    const folder = join(packages, 'node_modules', name);
+  for (const name of readdirSync(modules).filter((name) => !name.startsWith('esbuild'))) {
+    const folder = join(modules, name);
     const {version, license} = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
     const file = readdirSync(folder).find((entry) => /^licen[cs]e/i.test(entry));
     const text = file ? readFileSync(join(folder, file), 'utf8').trim() : `Licence: ${license}`;
@@ -50,15 +56,15 @@ const escape = (text) => text.replace(/&/g, '&amp;').replace(/</g, '&lt;').repla
 
 const script = await bundle('main.js');
 const style = await bundle('page.css');
-if (/<\/script|<!--/i.test(script.text)) throw new Error('the script would end its own element');
-const wasm = readFileSync(join(packages, 'node_modules/sql.js/dist/sql-wasm-browser.wasm'));
+if (/<\/script|<!--/i.test(script)) throw new Error('the script would end its own element');
+const wasm = readFileSync(join(modules, 'sql.js/dist/sql-wasm-browser.wasm'));
 const parts = {
-  policy: `default-src 'none'; script-src ${hash(script.text)} 'wasm-unsafe-eval'; style-src ${hash(style.text)}; ` +
+  policy: `default-src 'none'; script-src ${hash(script)} 'wasm-unsafe-eval'; style-src ${hash(style)}; ` +
     "img-src data: blob:; base-uri 'none'; form-action 'none'",
-  style: style.text,
+  style,
   wasm: gzipSync(wasm, {level: 9}).toString('base64'),
-  licences: escape(licences(script.inputs)),
-  script: script.text,
+  licences: escape(licences()),
+  script,
 };
 const html = readFileSync(join(source, 'page.html'), 'utf8').replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
 mkdirSync(dirname(page), {recursive: true});

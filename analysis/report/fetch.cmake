@@ -1,13 +1,32 @@
 # cmake -DNPM=npm -DFROM=analysis/report -DTO=FOLDER -P fetch.cmake
-# Fetches the packages of package-lock.json into TO/node_modules. TO/fetched says "yes", or why not: a machine without a
-# network builds clast without the page.
-file(MAKE_DIRECTORY ${TO})
-file(COPY ${FROM}/package.json ${FROM}/package-lock.json DESTINATION ${TO})
-execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error WORKING_DIRECTORY ${TO}
+# Fetches the packages of packages.txt into TO/node_modules, each alone: what they use is within. TO/fetched says "yes", or
+# why not: a machine without a network builds clast without the page.
+file(REMOVE_RECURSE ${TO})
+file(MAKE_DIRECTORY ${TO}/node_modules)
+file(STRINGS ${FROM}/packages.txt packages REGEX "^[^#]")
+string(REGEX REPLACE "([^; ]+) ([^; ]+) [^;]+" "\\1@\\2" names "${packages}")
+execute_process(COMMAND ${NPM} pack ${names} --ignore-scripts --loglevel=error WORKING_DIRECTORY ${TO}
   RESULT_VARIABLE code OUTPUT_VARIABLE said ERROR_VARIABLE said)
+foreach(package ${packages})
+  separate_arguments(package)
+  list(GET package 0 name)
+  list(GET package 1 version)
+  list(GET package 2 sum)
+  set(archive ${TO}/${name}-${version}.tgz)
+  if(code EQUAL 0)
+    file(SHA256 ${archive} found)
+    if(NOT found STREQUAL sum)
+      set(code 1)
+      set(said "${archive} has another check sum than packages.txt")
+      break()
+    endif()
+    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${TO}/${name})
+    file(RENAME ${TO}/${name}/package ${TO}/node_modules/${name})
+  endif()
+endforeach()
 if(code EQUAL 0)
   file(WRITE ${TO}/fetched "yes\n")
 else()
   file(WRITE ${TO}/fetched "no\n")
-  message("npm ci failed; `clast report` will not work until the next build has a network:\n${said}")
+  message("npm pack failed; `clast report` will not work until the next build has a network:\n${said}")
 endif()
