@@ -72,10 +72,8 @@ bool answer_masses(struct answer *answer, size_t column, const char *of, const v
 /* One number: first column of the first row; NaN if there is no row, or no number. `format` as in answer_to(). */
 status answer_number(struct store *store, double *number, struct error *error, const char *format, ...);
 
-/* Adds SQL functions to this connection only: the aggregates stdev(x), median(x) and hist_sum(masses), which pools mass
- * blobs into the store's bins as a JSON array of [bin, count, mass], and pooled_hw95(runs, count, squares), which is
- * pooled_spectrum_count_hw95(). Of the conditions that a run breaks (engine/condition.h): withheld(engine, warnings,
- * results) is 1 where one of the results is withheld, doubts(engine, warnings, results) has the words that
- * mark one of them (NULL: none), and the aggregate words(texts) has each word once. The views of a store use none of
- * them, so that any tool can read the views. */
+/* Adds SQL functions to this connection only: the aggregates stdev(x) and median(x). Of the conditions that a run
+ * breaks (engine/condition.h): withheld(engine, warnings, results) is 1 where one of the results is withheld,
+ * doubts(engine, warnings, results) has the words that mark one of them (NULL: none), and the aggregate words(texts)
+ * has each word once. The views of a store use none of them, so that any tool can read the views. */
 status ask_register_functions(struct store *store, struct error *error);

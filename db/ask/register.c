@@ -34,14 +34,6 @@ static void stdev_final(sqlite3_context *context) {
     sqlite3_result_double(context, sample_summarise_moments(&mean->moments, 0.95).standard_deviation);
 }
 
-/* pooled_hw95(runs, count, squares): pooled_spectrum_count_hw95(). SQLite turns NaN into NULL. */
-static void pooled_hw95(sqlite3_context *context, int count, sqlite3_value **values) {
-  (void)count;
-  sqlite3_result_double(context,
-                        pooled_spectrum_count_hw95((size_t)sqlite3_value_int64(values[0]),
-                                                   sqlite3_value_double(values[1]), sqlite3_value_double(values[2])));
-}
-
 /* seeds(seed, value): the values of a point's runs with their seeds, for crossed_...(). */
 struct values {
   struct sample_of_seed *value;
@@ -202,53 +194,6 @@ static void words_final(sqlite3_context *context) {
   sqlite3_result_text(context, all ? all->text : "", -1, SQLITE_TRANSIENT);
 }
 
-enum { LOWEST = -400, BINS = 800 }; /* 1e-40 to 1e40 kg */
-
-struct histogram {
-  int64_t count[BINS];
-  double mass[BINS];
-  bool wrong;
-};
-
-static void hist_sum_step(sqlite3_context *context, int count, sqlite3_value **values) {
-  (void)count;
-  struct histogram *h = sqlite3_aggregate_context(context, sizeof *h);
-  if (!h || sqlite3_value_type(values[0]) == SQLITE_NULL)
-    return;
-  const unsigned char *bytes = sqlite3_value_blob(values[0]);
-  size_t size = (size_t)sqlite3_value_bytes(values[0]);
-  h->wrong = h->wrong || sqlite3_value_type(values[0]) != SQLITE_BLOB || size % 8 != 0;
-  for (size_t i = 0; !h->wrong && i < size; i += 8) {
-    double mass; /* little-endian (db/store/add.c) */
-    memcpy(&mass, bytes + i, sizeof mass);
-    int bin = spectrum_bin(mass);
-    if (bin < LOWEST || bin >= LOWEST + BINS)
-      continue;
-    h->count[bin - LOWEST]++;
-    h->mass[bin - LOWEST] += mass;
-  }
-}
-
-static void hist_sum_final(sqlite3_context *context) {
-  struct histogram *h = sqlite3_aggregate_context(context, 0);
-  char *text = NULL;
-  bool first = true;
-  if (h && h->wrong) {
-    sqlite3_result_error(context, "hist_sum() takes fragment_mass.masses: blobs of float64", -1);
-    return;
-  }
-  FILE *out = text_open(&text);
-  fputc('[', out);
-  for (int i = 0; h && i < BINS; i++) {
-    if (h->count[i] == 0)
-      continue;
-    fprintf(out, "%s[%d,%lld,%.17g]", first ? "" : ",", i + LOWEST, (long long)h->count[i], h->mass[i]);
-    first = false;
-  }
-  fputc(']', out);
-  sqlite3_result_text(context, text_close_small(out, &text), -1, free);
-}
-
 static const struct {
   const char *name;
   int arguments;
@@ -263,8 +208,6 @@ static const struct {
     {"crossed_units", 1, NULL, crossed_step, crossed_units_final},
     {"crossed_sd", 1, NULL, crossed_step, crossed_sd_final},
     {"student", 1, student, NULL, NULL},
-    {"hist_sum", 1, NULL, hist_sum_step, hist_sum_final},
-    {"pooled_hw95", 3, pooled_hw95, NULL, NULL},
     {"withheld", 3, withheld, NULL, NULL},
     {"doubts", 3, doubts, NULL, NULL},
     {"words", 1, NULL, words_step, words_final},

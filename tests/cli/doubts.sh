@@ -306,7 +306,7 @@ ok "every condition is explained"
 # The functions that the help of query names are there.
 expect 0 "$clast" query --help
 named=$(sed '/^options:/q' out | grep -o '[a-z_][a-z_]*(' | sort -u | xargs)
-same "$named" "doubts( hist_sum( median( stdev(" "functions in the help of query"
+same "$named" "doubts( median( stdev(" "functions in the help of query"
 for function in $named; do
   expect 64 "$clast" query marked.db "select $function)"
   says "wrong number of arguments to function $function)"

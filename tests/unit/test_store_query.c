@@ -409,12 +409,6 @@ static void our_aggregates(void **state) {
   assert_near(number(store, "SELECT mean(value) FROM json_each('[1.6e308,1.7e308]')"), 1.65e308, 1e294);
   assert_near(number(store, "SELECT mean(NULL) IS NULL AND stdev(value) > 0 FROM json_each('[1e-170,2e-170]')"), 1, 0);
   assert_near(number(store, "SELECT stdev(1) IS NULL AND median(NULL) IS NULL"), 1, 0);
-  assert_near(number(store,
-                     "SELECT count(*) FROM (SELECT value->>0 AS bin, value->>1 AS count FROM json_each((SELECT "
-                     "hist_sum(masses) FROM fragment_mass JOIN run USING (run_id) WHERE point_id = 2))) JOIN spectra s "
-                     "USING (bin, count) WHERE s.point_id = 2"),
-              number(store, "SELECT count(*) FROM spectra WHERE point_id = 2"), 0);
-  assert_int_equal(ask(store, "SELECT hist_sum('text')", &rows), STATUS_USAGE);
   store_close(store, NULL);
 }
 
