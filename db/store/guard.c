@@ -25,57 +25,6 @@ static void json_valid(sqlite3_context *context, int count, sqlite3_value **valu
   sqlite3_result_int(context, statement && sqlite3_step(statement) == SQLITE_ROW);
 }
 
-static void finalize(void *statement) {
-  sqlite3_finalize(statement);
-}
-
-static void close_own(void *own) {
-  sqlite3_close(own);
-}
-
-/* printf() and format(). Those of SQLite (3.40) answer NULL for a text beyond the limit, as if there were none; these
- * end the query. The user data is a connection that has SQLite's own. They answer NULL for an empty text too: so the
- * text that they make begins with an x, which is taken off. */
-static void format_within_limit(sqlite3_context *context, int count, sqlite3_value **values) {
-  if (count == 0 || sqlite3_value_type(values[0]) == SQLITE_NULL)
-    return;
-  sqlite3_stmt *statement = sqlite3_get_auxdata(context, 0);
-  const bool known = statement != NULL;
-  if (!known) {
-    sqlite3_str *sql = sqlite3_str_new(NULL);
-    sqlite3_str_appendall(sql, "SELECT format('x' || ?1");
-    for (int i = 2; i <= count; i++)
-      sqlite3_str_appendf(sql, ", ?%d", i);
-    char *text = sqlite3_mprintf("%z)", sqlite3_str_finish(sql));
-    if (text)
-      sqlite3_prepare_v2(sqlite3_user_data(context), text, -1, &statement, NULL);
-    sqlite3_free(text);
-  }
-  for (int i = 0; statement && i < count; i++)
-    sqlite3_bind_value(statement, i + 1, values[i]);
-  if (!statement || sqlite3_step(statement) != SQLITE_ROW)
-    sqlite3_result_error_nomem(context);
-  else if (sqlite3_column_type(statement, 0) == SQLITE_NULL)
-    sqlite3_result_error_toobig(context);
-  else if (sqlite3_column_bytes(statement, 0) > 1)
-    sqlite3_result_text(context, (const char *)sqlite3_column_text(statement, 0) + 1,
-                        sqlite3_column_bytes(statement, 0) - 1, SQLITE_TRANSIENT);
-  sqlite3_reset(statement);
-  if (!known)
-    sqlite3_set_auxdata(context, 0, statement, finalize);
-}
-
-static void bound_format(sqlite3 *db, const char *name) {
-  sqlite3 *own = NULL;
-  if (sqlite3_open(":memory:", &own) != SQLITE_OK) {
-    sqlite3_close(own);
-    return;
-  }
-  sqlite3_limit(own, SQLITE_LIMIT_LENGTH, LONGEST_VALUE);
-  sqlite3_create_function_v2(db, name, -1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS, own,
-                             format_within_limit, NULL, NULL, close_own);
-}
-
 void guard_connection(sqlite3 *db) {
   static const struct {
     int option, value;
@@ -88,8 +37,6 @@ void guard_connection(sqlite3 *db) {
     sqlite3_db_config(db, options[i].option, options[i].value, NULL);
   sqlite3_create_function(db, "json_valid", 1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS, NULL, json_valid,
                           NULL, NULL);
-  bound_format(db, "printf");
-  bound_format(db, "format");
   sqlite3_limit(db, SQLITE_LIMIT_LENGTH, LONGEST_VALUE);
   sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 0);
 }
@@ -128,7 +75,6 @@ static const char reading[] = "reading the schema";
 
 struct guard {
   sqlite3 *db;
-  int version;
   FILE *out; /* what is not as clast makes it */
   size_t strangers;
 };
@@ -313,7 +259,7 @@ static status judge_table(struct guard *guard, const struct schema_table *table,
   FILE *out = text_open(&ours);
   status result = write_table(guard, table, out, error);
   text_close_small(out, &ours);
-  for (size_t i = 0; guard->version >= SCHEMA_READABLE && i < table->count; i++)
+  for (size_t i = 0; i < table->count; i++)
     if (!schema_may_lack(table->name, table->columns[i].name) &&
         !schema_has_column(guard->db, table->name, table->columns[i].name))
       refuse(guard, "the lack of column", table->columns[i].name, table->name);
@@ -356,9 +302,9 @@ static status judge(struct guard *guard, struct error *error) {
   return guard->strangers == 0 && schema_has_column(guard->db, "axis", NULL) ? judge_axes(guard, error) : STATUS_OK;
 }
 
-status guard_schema(sqlite3 *db, const char *path, int version, struct error *error) {
+status guard_schema(sqlite3 *db, const char *path, struct error *error) {
   OWNED char *names = NULL;
-  struct guard guard = {.db = db, .version = version, .out = text_open(&names)};
+  struct guard guard = {.db = db, .out = text_open(&names)};
   const status result = judge(&guard, error);
   text_close_small(guard.out, &names);
   if (result || guard.strangers == 0)

@@ -177,9 +177,8 @@ status guard_attach(sqlite3 *db, const char *source, const char *doing, struct e
 /* Writes a compact copy of a store whose schema guard_schema() has passed. */
 status guard_vacuum_into(sqlite3 *db, const char *path, const char *doing, struct error *error);
 
-/* Compares the schema with ours. `version`: the store's; older ones may lack columns. STATUS_CONTENT: the message names
- * every object that no version of clast creates. */
-status guard_schema(sqlite3 *db, const char *path, int version, struct error *error);
+/* Compares the schema with ours. STATUS_CONTENT: the message names every object that no version of clast creates. */
+status guard_schema(sqlite3 *db, const char *path, struct error *error);
 
 /* ---- fields files ---- */
 

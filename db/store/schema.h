@@ -12,8 +12,7 @@ enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
   SCHEMA_VERSION = 5,                 /* added table ejecta, column lengths */
   SCHEMA_DIGESTS = 4,                 /* added table_digest */
-  SCHEMA_READABLE = 3,                /* the oldest version that is read */
-  SCHEMA_OLDEST = 2,                  /* the oldest version that is brought forward */
+  SCHEMA_OLDEST = 3,                  /* the oldest version that is read and brought forward */
   SCHEMA_NAME_SIZE = 128,
 };
 

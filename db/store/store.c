@@ -319,42 +319,14 @@ static status inspect(sqlite3 *db, const char *path, int *version, struct error 
         "this file. It did not change now.",
         path);
   *version = (int)header.version;
-  return guard_schema(db, path, *version, error);
+  return guard_schema(db, path, error);
 }
 
 /* ---- upgrades ---- */
 
-static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
-  static const char doing[] = "keeping a copy before bringing the store forward";
-  struct file_output file;
-  char *copy = NULL;
-  for (int i = 0; i < 100; i++) { /* an earlier attempt may have left a copy */
-    sqlite3_free(copy);
-    copy = i ? sql_format("%s.version%d.%d", path, version, i) : sql_format("%s.version%d", path, version);
-    if (access(copy, F_OK) != 0)
-      break;
-  }
-  status result = file_begin(&file, copy, "copy of the store", error);
-  if (result == STATUS_OK)
-    result = file_end(&file, guard_vacuum_into(db, file.temporary, doing, error), error);
-  sqlite3_free(copy);
-  return result;
-}
-
-/* Version 2 did not say which campaign a session computed: among the campaigns of the points of its runs, it is the
- * last one that existed when the session ended. */
-static const char name_campaigns[] =
-    "UPDATE session SET campaign_id = of.campaign_id FROM (SELECT s.session_id, max(c.campaign_id) AS campaign_id FROM "
-    "(SELECT DISTINCT session_id, point_id FROM run) r JOIN session s USING (session_id) JOIN campaign_point p USING "
-    "(point_id) JOIN campaign c ON c.campaign_id = p.campaign_id WHERE s.ended_at IS NULL OR substr(c.added_at, 1, 19) "
-    "<= substr(s.ended_at, 1, 19) GROUP BY s.session_id) AS of WHERE of.session_id = session.session_id AND "
-    "session.campaign_id IS NULL";
-
 /* Within a transaction. version: -1 for a new file. */
 static status bring_forward(sqlite3 *db, int version, struct error *error) {
   TRY(schema_complete_all(db, error));
-  if (version == 2)
-    TRY(sql_execute(db, name_campaigns, "bringing the store forward", error));
   if (version < SCHEMA_DIGESTS)
     TRY(digest_tables_fill(db, error));
   TRY(views_regenerate(db, error));
@@ -362,11 +334,8 @@ static status bring_forward(sqlite3 *db, int version, struct error *error) {
                       SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
 }
 
-/* Creates everything in an empty file; else adds tables and columns that the store lacks, and makes the views again.
- * Keeps a copy of a version that programs of this one do not read as FILE.version<N>. */
-static status upgrade(sqlite3 *db, const char *path, int version, struct error *error) {
-  if (version >= 0 && version < SCHEMA_READABLE)
-    TRY(back_up(db, path, version, error));
+/* Creates everything in an empty file; else adds tables and columns that the store lacks, and makes the views again. */
+static status upgrade(sqlite3 *db, int version, struct error *error) {
   TRY(sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error));
   const status result = bring_forward(db, version, error);
   if (result != STATUS_OK)
@@ -511,7 +480,7 @@ static status open_locked(struct store *store, struct error *error) {
                   "opening for writing", error));
   if (version >= 0)
     TRY(store_check_folder(store, error));
-  TRY(upgrade(store->db, store->path, version, error));
+  TRY(upgrade(store->db, version, error));
   TRY(digest_tables_follow(store->db, &store->tables, error));
   TRY(write_holder(store, error));
   TRY(sql_execute(store->db, "PRAGMA journal_mode = WAL", "opening for writing", error));
@@ -593,12 +562,12 @@ static status check_version(const struct store *store, int version, struct error
     return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
   if (version < 0)
     return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
-  if (version >= SCHEMA_READABLE && schema_is_complete(store->db))
+  if (schema_is_complete(store->db))
     return STATUS_OK;
   return status_fail(error, STATUS_CONTENT,
                      "%s was written by an older clast (store version %d, now %d) and lacks columns. Run its campaign "
                      "once more, or merge another store into it (`clast merge FILE OTHER`): opening for writing adds "
-                     "them; it keeps a copy if the version changes.",
+                     "them.",
                      store->path, version, SCHEMA_VERSION);
 }
 

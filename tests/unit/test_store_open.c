@@ -121,13 +121,14 @@ static void failed_creation_leaves_an_empty_file(void **state) {
   populated(path);
 }
 
-/* Versions 0 and 1 are from before the first release: refused, with the remedy, and not changed. */
+/* Versions 0 to 2 are from before the first release: refused, with the remedy, and not changed. */
 static void oldest_stores_are_refused(void **state) {
   (void)state;
   char path[64];
   populated(fixture_path(path, "old"));
   for (int version = 0; version < SCHEMA_OLDEST; version++) {
-    sql(path, version ? "PRAGMA user_version = 1" : "PRAGMA user_version = 0");
+    static const char *const old[] = {"PRAGMA user_version = 0", "PRAGMA user_version = 1", "PRAGMA user_version = 2"};
+    sql(path, old[version]);
     refused(path, STATUS_CONTENT, STATUS_CONTENT, "SELECT document FROM campaign");
   }
 }
@@ -162,41 +163,6 @@ static void missing_columns_are_added_by_a_writer(void **state) {
   }
 }
 
-/* Version 2: no campaign in sessions, no document unit on axes. A writer brings it forward and keeps a copy. */
-static void version_2_is_brought_forward(void **state) {
-  (void)state;
-  char path[64], backup[80];
-  struct store *store = NULL;
-  struct ask_column axes[4];
-  size_t count = 0;
-  populated(fixture_path(path, "sessions"));
-  sql(path, "ALTER TABLE session DROP COLUMN campaign_id; ALTER TABLE axis DROP COLUMN written_unit; "
-            "PRAGMA user_version = 2");
-  assert_int_equal(store_open_reader(path, &store, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "older clast"));
-  OK(store_open_writer(path, &store, NULL, 0, &error));
-  assert_near(number(store, "PRAGMA user_version"), SCHEMA_VERSION, 0);
-  assert_near(number(store, "SELECT count(*) FROM session WHERE campaign_id = 1"), 1, 0);
-  OK(store_add_axis(store, &fixture_input_rows[0], "%", &error));
-  OK(ask_columns_axes(store, true, 4, axes, &count, &error));
-  assert_string_equal(axes[1].name, "material_m");
-  assert_string_equal(axes[1].unit, "%");
-  assert_near(axes[1].factor, 0.01, 0);
-  OK(store_add_axis(store, &fixture_input_rows[0], "km/s", &error)); /* not a unit of this input: refused */
-  OK(ask_columns_axes(store, true, 4, axes, &count, &error));
-  assert_string_equal(axes[1].unit, "1");
-  OK(store_check(store, NULL, NULL, &error));
-  OK(store_close(store, &error));
-  snprintf(backup, sizeof backup, "%s.version2", path);
-  sqlite3 *db = NULL;
-  sqlite3_open(backup, &db);
-  assert_int_equal(sqlite3_exec(db, "SELECT 1 FROM run; SELECT * FROM runs", NULL, NULL, NULL), SQLITE_OK);
-  sqlite3_close(db);
-  assert_true(size_of(backup) > 10000);
-  OK(store_open_reader(path, &store, &error));
-  OK(store_close(store, &error));
-}
-
 /* A migration that cannot finish leaves the old store unchanged. */
 static void failed_migration_changes_nothing(void **state) {
   (void)state;
@@ -204,7 +170,7 @@ static void failed_migration_changes_nothing(void **state) {
   struct store *store = NULL;
   populated(fixture_path(path, "stuck"));
   sql(path,
-      "DROP VIEW points; DROP TABLE point_total; DROP TABLE run; PRAGMA user_version = 2; CREATE TABLE run (odd TEXT)");
+      "DROP VIEW points; DROP TABLE point_total; DROP TABLE run; PRAGMA user_version = 3; CREATE TABLE run (odd TEXT)");
   assert_int_not_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_OK);
   assert_null(store);
   sqlite3 *db = NULL;
@@ -390,7 +356,6 @@ int main(void) {
       cmocka_unit_test(failed_creation_leaves_an_empty_file),
       cmocka_unit_test(oldest_stores_are_refused),
       cmocka_unit_test(missing_columns_are_added_by_a_writer),
-      cmocka_unit_test(version_2_is_brought_forward),
       cmocka_unit_test(failed_migration_changes_nothing),
       cmocka_unit_test(second_writer_is_told_who_holds_it),
       cmocka_unit_test(every_call_waits_for_another_program),
