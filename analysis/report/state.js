@@ -73,8 +73,11 @@ export function complete() {
   const columns = varied.map((axis) => axis.column_name), ofAll = columns.filter((column) => points.every((point) => point[column] !== null));
   let first = ofAll.length ? ofAll : columns; // an input of one scene of two is no axis of both
   if (points.length > 1) { // of inputs that tell the points apart in the same way, such as the columns, rows and spacing of grains, one with a unit
-    const of = new Map(), groups = (column) => JSON.stringify(points.map((point) => points.findIndex((other) => other[column] === point[column])));
-    for (const column of first) if (!of.has(groups(column)) || (!unitOf([store()], of.get(groups(column))) && unitOf([store()], column))) of.set(groups(column), column);
+    const of = new Map();
+    for (const column of first) {
+      const last = new Map(points.map((point, i) => [point[column], i])), groups = points.map((point) => last.get(point[column])).join();
+      if (!of.has(groups) || (!unitOf([store()], of.get(groups)) && unitOf([store()], column))) of.set(groups, column);
+    }
     first = [...of.values()];
   }
   if (first.length > 2 && !columns.includes(state.x)) { // the page opens on the two inputs with the largest effect
