@@ -53,6 +53,28 @@ static double single(double number) {
   return size < (double)FLT_MIN || size > (double)FLT_MAX ? number : (double)(float)number;
 }
 
+/* Prepares the insert of a row of so many values. */
+static status prepare_row(struct ask_page *page, const char *table, size_t count, sqlite3_stmt **insert,
+                          struct error *error) {
+  sqlite3_str *marks = sqlite3_str_new(NULL);
+  for (size_t i = 0; i < count; i++)
+    sqlite3_str_appendall(marks, i ? ", ?" : "?");
+  return sql_preparef(page->store.db, insert, doing, error, "INSERT INTO \"%w\" VALUES (%z)", table,
+                      sqlite3_str_finish(marks));
+}
+
+/* ADD_ROW(page, error, "table", values...) adds a row to a table. */
+#define ADD_ROW(page, error, table, ...)                                                                               \
+  add_row(page, error, table, sizeof((const struct sql_value[]){__VA_ARGS__}) / sizeof(struct sql_value),              \
+          (const struct sql_value[]){__VA_ARGS__})
+static status add_row(struct ask_page *page, struct error *error, const char *table, size_t count,
+                      const struct sql_value *values) {
+  STATEMENT insert = NULL;
+  TRY(prepare_row(page, table, count, &insert, error));
+  sql_bind_all(insert, count, values);
+  return sql_run(insert, doing, error);
+}
+
 /* Makes a table of the rows of an answer. Real numbers from column `rounded` (counted from 0) on are rounded to single
  * precision: 7 digits, and they compress well. */
 enum { EXACT = 1000 }; /* no column is rounded */
@@ -66,11 +88,7 @@ static status copy(struct ask_page *page, struct answer asked, const char *table
     sqlite3_str_appendf(columns, "%s\"%w\"", i ? ", " : "", answer_name(&answer, i));
   TRY(sql_executef(page->store.db, doing, answer.error, "CREATE TABLE \"%w\" (%z)", table,
                    sqlite3_str_finish(columns)));
-  sqlite3_str *marks = sqlite3_str_new(NULL);
-  for (size_t i = 0; i < count; i++)
-    sqlite3_str_appendall(marks, i ? ", ?" : "?");
-  TRY(sql_preparef(page->store.db, &insert, doing, answer.error, "INSERT INTO \"%w\" VALUES (%z)", table,
-                   sqlite3_str_finish(marks)));
+  TRY(prepare_row(page, table, count, &insert, answer.error));
   while (answer_next(&answer)) {
     for (size_t i = 0; i < count; i++) {
       struct sql_value value = sql_of_column(answer.statement, (int)i);
@@ -108,14 +126,13 @@ static status copy_spectra(struct ask_page *page, struct store *store, struct er
 /* ---- results whose runs have two modes at a point, by the rule of `clast scatter` ---- */
 
 struct modes {
-  sqlite3_stmt *insert;
   size_t n;     /* values of the previous sample */
   double limit; /* dip above which a sample of that size has two modes */
 };
 
 /* One result of the counted runs of a point; sorts the values. */
-static status add_modes(struct modes *modes, int64_t point, const char *quantity, size_t n, double *values,
-                        struct error *error) {
+static status add_modes(struct ask_page *page, struct modes *modes, int64_t point, const char *quantity, size_t n,
+                        double *values, struct error *error) {
   struct scatter s = {.n = n, .sorted = values};
   if (n < SCATTER_SHAPE_RUNS)
     return STATUS_OK;
@@ -129,10 +146,9 @@ static status add_modes(struct modes *modes, int64_t point, const char *quantity
   if (!(scatter_dip(n, values) > modes->limit))
     return STATUS_OK;
   scatter_find_modes(&s);
-  SQL_BIND(modes->insert, sql_of_integer(point), sql_of_text(quantity), sql_of_real(s.lower_mode),
-           sql_of_real(s.upper_mode), sql_of_real(s.between), sql_of_real(s.upper_share), sql_of_real(s.upper_low),
-           sql_of_real(s.upper_high));
-  return sql_run(modes->insert, doing, error);
+  return ADD_ROW(page, error, "modes", sql_of_integer(point), sql_of_text(quantity), sql_of_real(s.lower_mode),
+                 sql_of_real(s.upper_mode), sql_of_real(s.between), sql_of_real(s.upper_share),
+                 sql_of_real(s.upper_low), sql_of_real(s.upper_high));
 }
 
 /* ---- the runs of a page, thinned, and the statistics of all of their results ---- */
@@ -153,7 +169,6 @@ struct column {
 
 struct reading {
   struct ask_page *page;
-  sqlite3_stmt *insert; /* into means */
   struct modes modes;
   size_t count;
   struct column column[COLUMNS];
@@ -192,10 +207,10 @@ static struct sql_value rounded(double number) { /* NaN is NULL */
 
 static status add_mean(struct reading *reading, const struct column *column, struct error *error) {
   const struct sample_summary summary = summary_of(column);
-  SQL_BIND(reading->insert, sql_of_integer(reading->point_id), sql_of_integer(reading->results_version),
-           sql_of_text(column->name), sql_of_integer((int64_t)summary.n), rounded(summary.mean),
-           rounded(summary.standard_deviation), rounded(summary.half_width));
-  return sql_run(reading->insert, doing, error);
+  return ADD_ROW(reading->page, error, "means", sql_of_integer(reading->point_id),
+                 sql_of_integer(reading->results_version), sql_of_text(column->name),
+                 sql_of_integer((int64_t)summary.n), rounded(summary.mean), rounded(summary.standard_deviation),
+                 rounded(summary.half_width));
 }
 
 /* The view points has raw values: the mean of a main result leaves out those that are withheld. */
@@ -223,7 +238,8 @@ static status end_point(struct reading *reading, bool newest, struct error *erro
     else if (column->main && column->moments.n < reading->runs)
       TRY(correct_point(reading, column, error));
     if (newest)
-      TRY(add_modes(&reading->modes, reading->point_id, column->name, column->values_count, column->values, error));
+      TRY(add_modes(reading->page, &reading->modes, reading->point_id, column->name, column->values_count,
+                    column->values, error));
     column->moments = (struct sample_moments){.n = 0};
     column->values_count = 0;
   }
@@ -398,28 +414,20 @@ static status add_mark(struct reading *reading, const struct answer *words, cons
 }
 
 static status add_sentences(struct reading *reading, struct error *error) {
-  STATEMENT insert = NULL;
-  TRY(sql_prepare(reading->page->store.db, "INSERT INTO doubt_word VALUES (?1, ?2, ?3, ?4, ?5)", &insert, doing,
-                  error));
   for (size_t e = 0; e < engine_count(); e++)
     for (const struct condition *c = engine_at(e)->conditions; c && c->word; c++) {
       char says[CONDITION_SAYS];
       OWNED char *text = NULL;
       if (asprintf(&text, "%s: %s; %s", condition_says(c, says), c->doubt, c->remedy) < 0)
         memory_refused();
-      SQL_BIND(insert, sql_of_text(engine_at(e)->name), sql_of_text(c->word), sql_of_text(text),
-               sql_of_text(c->results), sql_of_integer(c->withheld));
-      TRY(sql_run(insert, doing, error));
+      TRY(ADD_ROW(reading->page, error, "doubt_word", sql_of_text(engine_at(e)->name), sql_of_text(c->word),
+                  sql_of_text(text), sql_of_text(c->results), sql_of_integer(c->withheld)));
     }
   return STATUS_OK;
 }
 
 static status add_doubts(struct reading *reading, struct store *store, struct error *error) {
   TRY(ask_register_functions(&reading->page->store, error));
-  TRY(sql_execute(reading->page->store.db,
-                  "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
-                  "CREATE TABLE doubt_word (engine, word, sentence, results, withheld)",
-                  doing, error));
   TRY(copy(
       reading->page,
       answer_to(store, error,
@@ -449,16 +457,7 @@ static status find_asked(struct reading *reading, struct store *store, struct er
 }
 
 static status fill_runs(struct reading *reading, struct store *store, struct error *error) {
-  sqlite3 *db = reading->page->store.db;
   TRY(ask_register_functions(store, error));
-  TRY(sql_execute(db,
-                  "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
-                  "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, "
-                  "upper_share, upper_low, upper_high)",
-                  doing, error));
-  TRY(sql_prepare(db, "INSERT INTO means VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", &reading->insert, doing, error));
-  TRY(sql_prepare(db, "INSERT INTO modes VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", &reading->modes.insert, doing,
-                  error));
   ANSWER names = ask_group_quantities(store, error);
   while (reading->count < COLUMNS && answer_next(&names)) {
     struct column *column = &reading->column[reading->count++];
@@ -480,8 +479,6 @@ static status add_runs(struct ask_page *page, struct store *store, struct error 
   reading->page = page;
   reading->modes.limit = NAN;
   const status code = fill_runs(reading, store, error);
-  sqlite3_finalize(reading->insert);
-  sqlite3_finalize(reading->modes.insert);
   for (size_t i = 0; i < reading->count; i++)
     free(reading->column[i].values);
   free(reading);
@@ -492,22 +489,19 @@ static status add_runs(struct ask_page *page, struct store *store, struct error 
  * gives them; other results and further points are left out to keep the page small ---- */
 
 static status add_quantiles(struct ask_page *page, struct store *store, struct error *error) {
-  STATEMENT insert = NULL;
   double points = 0;
-  TRY(sql_execute(page->store.db, "CREATE TABLE quantile (point_id, quantity, share, value, low, high)", doing, error));
   TRY(answer_number(store, &points, error, "SELECT count(*) FROM point"));
   if (points > QUANTILES)
     return STATUS_OK;
-  TRY(sql_prepare(page->store.db, "INSERT INTO quantile VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, OUTCOME_DEFAULT, error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     SCATTER scatter = {0};
     TRY(scatter_make(pool->data.runs.count, pool->value, &scatter, error));
     for (size_t i = 0; scatter.n > 1 && i < SCATTER_QUANTILES; i++) {
       const struct scatter_quantile *quantile = &scatter.quantile[i];
-      SQL_BIND(insert, sql_of_integer(pool->point[0]), sql_of_text(OUTCOME_DEFAULT), sql_of_real(scatter_shares[i]),
-               sql_of_real(quantile->value), sql_of_real(quantile->low), sql_of_real(quantile->high));
-      TRY(sql_run(insert, doing, error));
+      TRY(ADD_ROW(page, error, "quantile", sql_of_integer(pool->point[0]), sql_of_text(OUTCOME_DEFAULT),
+                  sql_of_real(scatter_shares[i]), sql_of_real(quantile->value), sql_of_real(quantile->low),
+                  sql_of_real(quantile->high)));
     }
   }
   return ask_pools_end(&pools);
@@ -516,7 +510,7 @@ static status add_quantiles(struct ask_page *page, struct store *store, struct e
 /* ---- does a power law fit the fragments of a point? the same test as in `clast exponents` ---- */
 
 /* *enough: the next test would take too long. */
-static status add_fit(sqlite3_stmt *insert, const struct ask_pool *pool, int64_t *fragments, bool *enough,
+static status add_fit(struct ask_page *page, const struct ask_pool *pool, int64_t *fragments, bool *enough,
                       struct error *error) {
   const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   const struct pooled_runs *runs = &pool->data.runs;
@@ -532,19 +526,16 @@ static status add_fit(sqlite3_stmt *insert, const struct ask_pool *pool, int64_t
   if (*enough)
     return STATUS_OK;
   TRY(pooled_goodness(runs, lower, DRAWS, &goodness, error));
-  SQL_BIND(insert, sql_of_integer(pool->data.point_id), sql_of_integer(fit.fit.n), sql_of_real(goodness.p));
-  return sql_run(insert, doing, error);
+  return ADD_ROW(page, error, "goodness", sql_of_integer(pool->data.point_id), sql_of_integer(fit.fit.n),
+                 sql_of_real(goodness.p));
 }
 
 static status add_goodness(struct ask_page *page, struct store *store, struct error *error) {
-  STATEMENT insert = NULL;
   int64_t fragments = 0; /* tested so far */
   bool enough = false;
-  TRY(sql_execute(page->store.db, "CREATE TABLE goodness (point_id, n, p)", doing, error));
-  TRY(sql_prepare(page->store.db, "INSERT INTO goodness VALUES (?1, ?2, ?3)", &insert, doing, error));
   ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
   for (const struct ask_pool *pool; !enough && (pool = ask_pools_next(&pools));)
-    TRY(add_fit(insert, pool, &fragments, &enough, error));
+    TRY(add_fit(page, pool, &fragments, &enough, error));
   return ask_pools_end(&pools);
 }
 
@@ -565,36 +556,28 @@ static status untold_reason(struct store *store, const struct answer *row, const
 }
 
 static status add_untold(struct ask_page *page, struct store *store, struct error *error) {
-  STATEMENT insert = NULL;
-  TRY(sql_execute(page->store.db, "CREATE TABLE untold (point_id, results_version, reason)", doing, error));
-  TRY(sql_prepare(page->store.db, "INSERT INTO untold VALUES (?1, ?2, ?3)", &insert, doing, error));
   ANSWER rows = answer_to(store, error,
                           "SELECT point_id, results_version, n, beta, hw95 FROM estimates WHERE run_id IS NULL AND "
                           "headline ORDER BY point_id, results_version");
   while (answer_next(&rows)) {
     const char *reason;
     TRY(untold_reason(store, &rows, &reason, error));
-    if (!reason)
-      continue;
-    SQL_BIND(insert, sql_of_integer(answer_integer(&rows, 0)), sql_of_integer(answer_integer(&rows, 1)),
-             sql_of_text(reason));
-    TRY(sql_run(insert, doing, error));
+    if (reason)
+      TRY(ADD_ROW(page, error, "untold", sql_of_integer(answer_integer(&rows, 0)),
+                  sql_of_integer(answer_integer(&rows, 1)), sql_of_text(reason)));
   }
   return answer_end(&rows);
 }
 
 /* The canned queries that the page's tables can answer. */
 static status add_questions(struct ask_page *page, struct error *error) {
-  STATEMENT insert = NULL;
-  TRY(sql_prepare(page->store.db, "INSERT INTO question VALUES (?1, ?2, ?3, ?4)", &insert, doing, error));
   for (size_t i = 0; i < ask_canned_count(); i++) {
     const struct query_canned *query = ask_canned_at(i);
     STATEMENT trial = NULL;
     if (sqlite3_prepare_v2(page->store.db, query->sql, -1, &trial, NULL) != SQLITE_OK)
       continue;
-    SQL_BIND(insert, sql_of_text(query->name), sql_of_text(query->doc), sql_of_text(query->sql),
-             sql_of_text(query->parameters));
-    TRY(sql_run(insert, doing, error));
+    TRY(ADD_ROW(page, error, "question", sql_of_text(query->name), sql_of_text(query->doc), sql_of_text(query->sql),
+                sql_of_text(query->parameters)));
   }
   return STATUS_OK;
 }
@@ -609,6 +592,14 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
                   "CREATE TABLE question (name, doc, sql, parameters);"
                   "CREATE TABLE picture (run_id, point_id, quantile, png);"
                   "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
+                  "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
+                  "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, upper_share, "
+                  "upper_low, upper_high);"
+                  "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
+                  "CREATE TABLE doubt_word (engine, word, sentence, results, withheld);"
+                  "CREATE TABLE quantile (point_id, quantity, share, value, low, high);"
+                  "CREATE TABLE goodness (point_id, n, p);"
+                  "CREATE TABLE untold (point_id, results_version, reason);"
                   "BEGIN",
                   doing, error));
   for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
@@ -706,21 +697,15 @@ struct answer ask_page_kept(struct store *store, struct error *error) {
 
 status ask_page_picture(struct ask_page *page, const struct answer *kept, const void *png, size_t size,
                         struct error *error) {
-  STATEMENT insert = NULL;
-  TRY(sql_prepare(page->store.db, "INSERT INTO picture VALUES (?1, ?2, ?3, ?4)", &insert, doing, error));
-  SQL_BIND(insert, sql_of_integer(answer_integer(kept, 0)), sql_of_integer(answer_integer(kept, 1)),
-           sql_of_real(answer_real(kept, 2)), sql_of_bytes(png, size));
-  return sql_run(insert, doing, error);
+  return ADD_ROW(page, error, "picture", sql_of_integer(answer_integer(kept, 0)),
+                 sql_of_integer(answer_integer(kept, 1)), sql_of_real(answer_real(kept, 2)), sql_of_bytes(png, size));
 }
 
 status ask_page_difference(struct ask_page *page, const char *quantity, int64_t first_point, int64_t point,
                            const struct difference *difference, struct error *error) {
-  STATEMENT insert = NULL;
-  TRY(sql_prepare(page->store.db, "INSERT INTO difference VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error));
-  SQL_BIND(insert, sql_of_text(quantity), sql_of_integer(first_point), sql_of_integer(point),
-           sql_of_integer((int64_t)difference->pairs), sql_of_real(difference->difference),
-           sql_of_real(difference->half_width));
-  return sql_run(insert, doing, error);
+  return ADD_ROW(page, error, "difference", sql_of_text(quantity), sql_of_integer(first_point), sql_of_integer(point),
+                 sql_of_integer((int64_t)difference->pairs), sql_of_real(difference->difference),
+                 sql_of_real(difference->half_width));
 }
 
 status ask_page_file(struct ask_page *page, unsigned char **bytes, size_t *size, struct error *error) {
