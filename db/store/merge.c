@@ -1,6 +1,4 @@
 /* Merging the stores of several machines. Points are the same when their hashes are, runs when their identities are. */
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,18 +13,7 @@ static const char doing[] = "merging";
 /* Documents that the build embeds: db/store/merge_parents.sql, db/store/merge_rest.sql. */
 extern const char merge_parents_sql[], merge_rest_sql[];
 
-/* ---- inspecting the source: all pages, then the digests of all rows. A thread does this with a connection of its own
- * while the caller copies the rows. It takes about a third of the time of a merge ---- */
-
-struct inspection {
-  const char *source; /* borrowed */
-  struct store *store;
-  pthread_t thread;
-  bool has_thread;    /* false: no thread could be started, and the check is already done */
-  atomic_bool failed; /* set by the thread while the caller copies */
-  status result;
-  struct error error;
-};
+/* ---- inspecting the source: all pages, then the digests of all rows, before the first row is copied ---- */
 
 /* Checks all pages and the types of all rows. Rows of table spectrum, the longest table, are checked one by one when
  * they are copied. */
@@ -43,9 +30,9 @@ static status check_pages(struct store *other, const char *source, struct error 
   return result;
 }
 
-static status compare(const struct inspection *inspection, enum digest_kind kind, struct error *error) {
+static status compare(struct store *other, const char *source, enum digest_kind kind, struct error *error) {
   int64_t first = 0, count = 0;
-  DIGEST_ROWS rows = digest_rows(inspection->store->db, kind, 0, false, error);
+  DIGEST_ROWS rows = digest_rows(other->db, kind, 0, false, error);
   while (digest_rows_next(&rows))
     if (!rows.whole && count++ == 0)
       first = rows.number;
@@ -55,32 +42,16 @@ static status compare(const struct inspection *inspection, enum digest_kind kind
   return status_fail(error, STATUS_CONTENT,
                      "%s: %s %lld is damaged: a bit has changed since it was stored; %lld in all. Nothing was "
                      "taken from it; `clast check` lists them. Restore a copy.",
-                     inspection->source, rows.table, (long long)first, (long long)count);
+                     source, rows.table, (long long)first, (long long)count);
 }
 
-static void *inspect_all(void *context) {
-  struct inspection *inspection = context;
-  inspection->result = check_pages(inspection->store, inspection->source, &inspection->error);
-  for (enum digest_kind kind = DIGEST_RUNS; inspection->result == STATUS_OK && kind <= DIGEST_POINTS; kind++)
-    inspection->result = compare(inspection, kind, &inspection->error);
-  inspection->failed = inspection->result != STATUS_OK;
-  return NULL;
-}
-
-/* A progress handler of SQLite: it ends a statement once the thread has found damage. Damaged pages can make a
- * statement endless. */
-static int has_failed(void *inspection) {
-  return ((struct inspection *)inspection)->failed;
-}
-
-/* Waits for the end of the thread. STATUS_CONTENT: the source is damaged, so nothing that was copied may be kept. */
-static status end_inspection(struct inspection *inspection, struct error *error) {
-  if (inspection->has_thread)
-    pthread_join(inspection->thread, NULL);
-  if (inspection->result != STATUS_OK && error)
-    *error = inspection->error;
-  const status closed = store_close(inspection->store, inspection->result == STATUS_OK ? error : NULL);
-  return inspection->result == STATUS_OK ? closed : inspection->result;
+/* Also refuses a missing, foreign, newer or older file, and one with unexpected objects. */
+static status inspect(const char *source, struct error *error) {
+  STORE other = NULL;
+  TRY(store_open_reader(source, &other, error));
+  TRY(check_pages(other, source, error));
+  TRY(compare(other, source, DIGEST_RUNS, error));
+  return compare(other, source, DIGEST_POINTS, error);
 }
 
 /* ---- copying ---- */
@@ -300,26 +271,14 @@ static status keep_temporary(struct store *store, const char *place, struct erro
   return digest_tables_follow(store->db, &store->tables, error);
 }
 
-/* Copies while the inspection runs. If the source is damaged, that is the error, whatever the copying met. */
-static status merge_inspected(struct store *store, const char *source, struct inspection *inspection,
-                              struct merged *merged, int64_t *differing, struct error *error) {
-  enum { STEPS_BETWEEN = 100000 }; /* of SQLite's virtual machine: about a millisecond */
-  struct error damage = {0};
-  sqlite3_progress_handler(store->db, STEPS_BETWEEN, has_failed, inspection);
+/* Nothing is kept unless everything was copied. */
+static status copy_at_once(struct store *store, const char *source, struct merged *merged, int64_t *differing,
+                           struct error *error) {
   /* The sums of a million runs are sorted in files, not in memory. */
-  status result = guard_attach(store->db, source, doing, error);
-  if (result == STATUS_OK)
-    result = keep_temporary(store, "FILE", error);
-  if (result == STATUS_OK)
-    result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
-  if (result == STATUS_OK)
-    result = copy_missing(store, source, merged, differing, error);
-  sqlite3_progress_handler(store->db, 0, NULL, NULL);
-  const status inspected = end_inspection(inspection, &damage);
-  if (inspected != STATUS_OK && error)
-    *error = damage;
-  if (inspected != STATUS_OK)
-    result = inspected;
+  TRY(guard_attach(store->db, source, doing, error));
+  TRY(keep_temporary(store, "FILE", error));
+  TRY(sql_execute(store->db, "BEGIN IMMEDIATE", doing, error));
+  status result = copy_missing(store, source, merged, differing, error);
   if (result == STATUS_OK)
     result = digest_tables_write(store->db, &store->tables, error);
   if (result == STATUS_OK)
@@ -346,18 +305,12 @@ static status check_names(const struct store *store, const char *source, struct 
                             source, store->path);
 }
 
-/* Nothing is kept unless everything was copied and the source is whole. */
-static status merge(struct store *store, const char *source, struct inspection *inspection, int64_t *added,
-                    int64_t *differing, struct error *error) {
+static status merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
   struct merged merged = {0};
   TRY(check_names(store, source, error));
   TRY(store_flush(store, error));
-  /* refuses a missing, foreign, newer or older file, and one with unexpected objects */
-  TRY(store_open_reader(source, &inspection->store, error));
-  inspection->has_thread = pthread_create(&inspection->thread, NULL, inspect_all, inspection) == 0;
-  if (!inspection->has_thread)
-    inspect_all(inspection);
-  TRY(merge_inspected(store, source, inspection, &merged, differing, error));
+  TRY(inspect(source, error));
+  TRY(copy_at_once(store, source, &merged, differing, error));
   *added = merged.added;
   return STATUS_OK;
 }
@@ -367,11 +320,10 @@ int64_t store_merge_excluded(const struct store *store, bool here) {
 }
 
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
-  struct inspection inspection = {.source = source};
   *added = 0;
   *differing = 0;
   store->excluded[0] = store->excluded[1] = 0;
-  const status result = merge(store, source, &inspection, added, differing, error);
+  const status result = merge(store, source, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other",
