@@ -132,8 +132,6 @@ struct sums_row {
 
 struct sums { /* all zero: empty */
   struct sums_entry *table;
-  struct sums_block *blocks; /* blocks of the entries, the one in use first */
-  size_t used;               /* entries of the first block */
   bool sorted;
   sqlite3_stmt *total, *bin; /* upserts, prepared at first use */
   sqlite3_stmt *stale;       /* deletes the pooled estimates of a point with new runs */

@@ -735,31 +735,27 @@ status store_begin_session(struct store *store, const char *facts_json, int64_t 
   return store_flush(store, error);
 }
 
-status store_set_session(struct store *store, int64_t session_id, int64_t campaign_id, struct error *error) {
+/* `change`: SQL of what is set. */
+static status set_session(struct store *store, int64_t session_id, const char *change, struct error *error) {
   TRY(store_begin(store, error));
-  const status result = sql_executef(store->db, "beginning a session", error,
-                                     "UPDATE session SET campaign_id = %lld WHERE session_id = %lld",
-                                     (long long)campaign_id, (long long)session_id);
+  const status result = sql_executef(store->db, "noting a session", error,
+                                     "UPDATE session SET %s WHERE session_id = %lld", change, (long long)session_id);
   return store_end(store, result, 1, error);
+}
+
+status store_set_session(struct store *store, int64_t session_id, int64_t campaign_id, struct error *error) {
+  SQL_TEXT change = sql_format("campaign_id = %lld", (long long)campaign_id);
+  return set_session(store, session_id, change, error);
 }
 
 status store_set_session_unmet(struct store *store, int64_t session_id, int64_t points, struct error *error) {
-  TRY(store_begin(store, error));
-  const status result =
-      sql_executef(store->db, "ending a session", error,
-                   "UPDATE session SET facts = json_set(facts, '$.points_unmet', %lld) WHERE session_id = %lld",
-                   (long long)points, (long long)session_id);
-  return store_end(store, result, 1, error);
+  SQL_TEXT change = sql_format("facts = json_set(facts, '$.points_unmet', %lld)", (long long)points);
+  return set_session(store, session_id, change, error);
 }
 
 status store_end_session(struct store *store, int64_t session_id, const char *outcome, struct error *error) {
-  TRY(store_begin(store, error));
-  const status result =
-      sql_executef(store->db, "ending a session", error,
-                   "UPDATE session SET ended_at = strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', 'now'), outcome = %Q WHERE "
-                   "session_id = %lld",
-                   outcome, (long long)session_id);
-  TRY(store_end(store, result, 1, error));
+  SQL_TEXT change = sql_format("ended_at = strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', 'now'), outcome = %Q", outcome);
+  TRY(set_session(store, session_id, change, error));
   return store_flush(store, error);
 }
 

@@ -25,40 +25,22 @@ struct sums_entry {
   bool changed; /* in this batch */
 };
 
-enum { BLOCK = 1024 };
-struct sums_block { /* entries are allocated in order, and all are released together */
-  struct sums_block *next;
-  struct sums_entry entries[BLOCK];
-};
-
-/* A zeroed entry of the first block; NULL when memory ran out. */
-static struct sums_entry *new_entry(struct sums *sums) {
-  if (!sums->blocks || sums->used == BLOCK) {
-    struct sums_block *block = malloc(sizeof *block);
-    if (!block)
-      return NULL;
-    block->next = sums->blocks;
-    sums->blocks = block;
-    sums->used = 0;
-  }
-  struct sums_entry *entry = &sums->blocks->entries[sums->used++];
-  *entry = (struct sums_entry){.is_added = true};
-  return entry;
-}
-
 /* The row to add to, zeros when new; the totals with SPECTRUM_NO_BIN. NULL: memory ran out. */
 static struct sums_row *row_at(struct sums *sums, const struct sums_run *run, int bin) {
   const struct sums_key key = {run->point_id, run->results_version, bin};
   struct sums_entry *entry;
   HASH_FIND(hh, sums->table, &key, sizeof key, entry);
   if (!entry) {
-    entry = new_entry(sums);
+    entry = calloc(1, sizeof *entry);
     if (!entry)
       return NULL;
     entry->row.key = key;
+    entry->is_added = true;
     HASH_ADD(hh, sums->table, row.key, sizeof key, entry);
-    if (!entry->is_added)
+    if (!entry->is_added) {
+      free(entry);
       return NULL;
+    }
     sums->sorted = false;
   }
   entry->changed = true;
@@ -154,18 +136,15 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
 }
 
 void sums_forget(struct sums *sums) {
-  HASH_CLEAR(hh, sums->table);
-  while (sums->blocks && sums->blocks->next) { /* keep one block for the next batch */
-    struct sums_block *block = sums->blocks;
-    sums->blocks = block->next;
-    free(block);
+  struct sums_entry *entry, *next;
+  HASH_ITER(hh, sums->table, entry, next) {
+    HASH_DEL(sums->table, entry);
+    free(entry);
   }
-  sums->used = 0;
 }
 
 void sums_clear(struct sums *sums) {
   sums_forget(sums);
-  free(sums->blocks);
   sqlite3_finalize(sums->total);
   sqlite3_finalize(sums->bin);
   sqlite3_finalize(sums->stale);
