@@ -81,16 +81,6 @@ double estimates_window_lower(enum estimates_window window, double element_mass,
   return fmax(estimates_window_elements(window) * element_mass, complete_mass); /* fmax ignores a NaN */
 }
 
-static const struct {
-  enum exponent_method method;
-  enum estimates_window window;
-} wanted[ESTIMATES_COUNT] = {
-    {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_2},  {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_5},
-    {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_10}, {EXPONENT_MASSES, ESTIMATES_FROM_2},
-    {EXPONENT_MASSES, ESTIMATES_FROM_5},         {EXPONENT_MASSES, ESTIMATES_FROM_10},
-    {EXPONENT_UPPER_CUTOFF, ESTIMATES_FROM_5},
-};
-
 status estimates_make(size_t n, const struct fragment *fragments, double complete_mass,
                       struct estimate rows[ESTIMATES_COUNT], struct error *error) {
   double total = 0, elements = 0, largest = 0;
@@ -107,16 +97,18 @@ status estimates_make(size_t n, const struct fragment *fragments, double complet
   double element = total / elements;
   for (int i = 0; i < ESTIMATES_COUNT; i++) {
     struct estimate *row = &rows[i];
-    double lower = estimates_window_lower(wanted[i].window, element, complete_mass);
-    struct exponent_window window = exponent_window_from(wanted[i].method, lower, largest);
-    *row = (struct estimate){.window = (int)wanted[i].window,
+    const enum exponent_method method = (enum exponent_method)(i / ESTIMATES_WINDOWS); /* with a cut-off: one window */
+    const int number = method == EXPONENT_UPPER_CUTOFF ? ESTIMATES_FROM_5 : i % ESTIMATES_WINDOWS;
+    const double lower = estimates_window_lower((enum estimates_window)number, element, complete_mass);
+    const struct exponent_window window = exponent_window_from(method, lower, largest);
+    *row = (struct estimate){.window = number,
                              .half_width = NAN,
-                             .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD &&
-                                         wanted[i].window == (int)ESTIMATES_HEADLINE_WINDOW,
-                             .fit = exponent_unknown(wanted[i].method, window)};
+                             .headline = method == (int)ESTIMATES_HEADLINE_METHOD &&
+                                         number == (int)ESTIMATES_HEADLINE_WINDOW,
+                             .fit = exponent_unknown(method, window)};
     if (!(largest > lower))
       continue; /* no fragment in the window */
-    TRY(exponent_fit(wanted[i].method, resolved, masses, window, &row->fit, error));
+    TRY(exponent_fit(method, resolved, masses, window, &row->fit, error));
     if (isinf(row->fit.cutoff_mass))
       row->fit.cutoff_mass = NAN;
   }
