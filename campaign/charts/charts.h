@@ -61,8 +61,7 @@ void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *t
              "campaign.")
 
 /* Prints a line on stderr for each condition that the runs behind these quantities (ask_doubts_results()) break. */
-status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
-                            struct error *error);
+status quantity_tell_doubts(struct store *store, const char *quantities, struct error *error);
 /* Fails with STATUS_USAGE: no run has a value of the quantity; says in how many it is withheld, and by which words. */
 status quantity_no_values(struct store *store, const char *quantity, struct error *error);
 /* Prints a line on stderr that names the varied inputs without effect (ask_group_idle()); none: prints nothing. */

@@ -143,7 +143,7 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
 static status read_exponents(struct store *store, struct quantity *quantity, enum exponent_method method,
                              enum estimates_window window, bool newest, struct error *error) {
   const char *inputs[AXES] = {quantity->column[0], quantity->column[1], quantity->column[2]};
-  ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, newest, quantity->axes, inputs, error);
+  ANSWER points = ask_points_rows(store, newest, quantity->axes, inputs, error);
   for (struct ask_points_row point; ask_points_next(&points, &point);) {
     struct pooled_exponent fit;
     struct ask_resolution resolution;
@@ -260,21 +260,19 @@ static status read_quantity(struct store *store, const char *const inputs[AXES],
 }
 
 /* Tells on stderr what the runs behind the quantities leave in doubt, and at the end of a caption. */
-static status add_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
-                         char *caption, size_t size, struct error *error) {
+static status add_doubts(struct store *store, const char *quantities, char *caption, size_t size, struct error *error) {
   char results[ASK_DOUBTS_RESULTS];
   struct ask_doubts doubts = {0};
   TRY(ask_doubts_results(store, quantities, results, error));
-  TRY(ask_doubts(store, choice, results, &doubts, error));
+  TRY(ask_doubts(store, &(struct ask_doubts_choice){0}, results, &doubts, error));
   charts_doubts(store, &doubts, caption, size);
   uncertainty_doubts(&doubts, stderr);
   return STATUS_OK;
 }
 
-status quantity_tell_doubts(struct store *store, const struct ask_doubts_choice *choice, const char *quantities,
-                            struct error *error) {
+status quantity_tell_doubts(struct store *store, const char *quantities, struct error *error) {
   char caption[CHARTS_LABEL] = "";
-  return add_doubts(store, choice, quantities, caption, sizeof caption, error);
+  return add_doubts(store, quantities, caption, sizeof caption, error);
 }
 
 status quantity_no_values(struct store *store, const char *quantity, struct error *error) {
@@ -538,7 +536,7 @@ static status order_places(struct store *store, struct plot *plot, struct error 
     words |= isnan(plot->quantity.row[i].input[0]) && *plot->quantity.row[i].text[0];
   if (!words)
     return STATUS_OK;
-  ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, true, 1, &input, error);
+  ANSWER points = ask_points_rows(store, true, 1, &input, error);
   for (struct ask_points_row point; ask_points_next(&points, &point);)
     for (size_t i = 0; point.inputs[0].kind == QUERY_TEXT && i < plot->quantity.count; i++) {
       const char *text = plot->quantity.row[i].text[0];
@@ -660,7 +658,7 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     text_append(caption, sizeof caption, "; no mark: %s", quantity->untold);
   if (*quantity->changing)
     tell_changing(quantity, plot->places ? "" : "no line joins the points: ", caption, sizeof caption);
-  TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
+  TRY(add_doubts(store, quantity->name, caption, sizeof caption, error));
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }
 
@@ -726,7 +724,7 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
     text_append(caption, sizeof caption, "; \xc3\x97: %s", quantity->untold);
   if (*quantity->changing)
     tell_changing(quantity, "", caption, sizeof caption);
-  TRY(add_doubts(store, &(struct ask_doubts_choice){0}, quantity->name, caption, sizeof caption, error));
+  TRY(add_doubts(store, quantity->name, caption, sizeof caption, error));
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, count, tile, panels->count,
                      panels->count ? label : NULL, error);
 }

@@ -3,7 +3,7 @@
 #include "campaign/commands/commands.h"
 
 static status ask(struct store *store, const struct command_line *line, struct error *error) {
-  return print_estimates(store, &(struct ask_points_choice){0}, line->format, true, error);
+  return print_estimates(store, line->format, true, error);
 }
 
 COMMAND(estimates, "results", "STORE", .chooses_runs = true, .has_table = true, .ask = ask);

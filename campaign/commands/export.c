@@ -73,7 +73,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
   else
     TRY(store_export(store, target, error));
   if (options->dakota) /* its files have no place for marks */
-    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, "main", error));
+    TRY(quantity_tell_doubts(store, "main", error));
   if (target)
     fprintf(stderr, "%s written\n", target);
   return STATUS_OK;

@@ -58,7 +58,7 @@ static status ask(struct store *store, const struct command_line *line, struct e
     fprintf(stderr, "clast: from row to row the value of %s changes, too (--by)\n", changing);
   quantity_tell_shared(store, &pooled);
   if (table_for_people(line->format)) {
-    TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){0}, asked, error));
+    TRY(quantity_tell_doubts(store, asked, error));
     TRY(quantity_tell_idle(store, error));
     quantity_tell_resolutions(store, asked, &pooled);
   }

@@ -190,8 +190,8 @@ static void warn_unmet(const struct campaign *campaign, const struct driver_summ
 }
 
 /* Means of the campaign's main quantity. */
-static status print_means(struct store *store, const char *path, int64_t campaign, const char *quantity,
-                          enum table_format format, bool quiet, struct error *error) {
+static status print_means(struct store *store, const char *path, const char *quantity, enum table_format format,
+                          bool quiet, struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_POOL];
   size_t count;
   char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "";
@@ -200,7 +200,7 @@ static status print_means(struct store *store, const char *path, int64_t campaig
   for (size_t i = 0; i < count; i++)
     text_append(by, sizeof by, "%s%s", i ? "," : "", axes[i].name);
   TRY(table_answer(ask_group(store, by, quantity, &pooled, error), true, format, stdout));
-  TRY(quantity_tell_doubts(store, &(struct ask_doubts_choice){.campaign = campaign}, quantity, error));
+  TRY(quantity_tell_doubts(store, quantity, error));
   if (quiet)
     return STATUS_OK;
   quantity_tell_resolutions(store, quantity, &pooled);
@@ -231,17 +231,16 @@ static status print_answers(const char *path, const struct campaign *document, i
                             enum table_format format, bool quiet, struct error *error) {
   const char *quantity = document->quantity;
   STORE store = NULL;
-  const struct ask_points_choice choice = {.campaign = campaign};
   int64_t points = 0, missing, wanted;
   char number[24], word[TEXT_WORD];
   snprintf(number, sizeof number, "%" PRId64, campaign);
   TRY(store_open_reader(path, &store, error));
-  TRY(ask_points_count(store, &choice, &points, error));
-  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error)); /* what is told below tables is of it, too */
+  TRY(ask_choose(store, &(struct ask_choice){.campaign = number}, error));
+  TRY(ask_points_count(store, &points, error));
   TRY(ask_run_missing(store, &missing, &wanted, error));
   uncertainty_missing(missing, wanted, path);
   if (!table_for_people(format)) {
-    TRY(print_estimates(store, &choice, format, !quiet, error));
+    TRY(print_estimates(store, format, !quiet, error));
     return quiet ? STATUS_OK : tell_accuracy(store, document, error);
   }
   if (quiet && format == TABLE_TEXT)
@@ -250,9 +249,9 @@ static status print_answers(const char *path, const struct campaign *document, i
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points,
             text_word(path, word), campaign);
   else if (strcmp(quantity, OUTCOME_DEFAULT) != 0 && strncmp(quantity, "beta", 4) != 0)
-    TRY(print_means(store, path, campaign, quantity, format, quiet, error));
+    TRY(print_means(store, path, quantity, format, quiet, error));
   else
-    TRY(print_estimates(store, &choice, format, !quiet, error));
+    TRY(print_estimates(store, format, !quiet, error));
   if (quiet)
     return STATUS_OK;
   TRY(tell_accuracy(store, document, error));

@@ -266,8 +266,7 @@ static status read_axes(struct printing *printing, struct error *error) {
   return STATUS_OK;
 }
 
-status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format,
-                       bool legend, struct error *error) {
+status print_estimates(struct store *store, enum table_format format, bool legend, struct error *error) {
   struct printing printing = {.store = store, .format = format};
   TRY(read_axes(&printing, error));
   TRY(ask_resolution_of_exponents(store, &printing.studied, error));
@@ -281,7 +280,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
     columns_for_people(&printing);
   else
     columns_for_programs(&printing);
-  ANSWER points = ask_points_rows(store, choice, true, printing.axes, inputs, error);
+  ANSWER points = ask_points_rows(store, true, printing.axes, inputs, error);
   size_t idle = 0; /* points without runs, such as finer settings that only a study knows */
   for (struct ask_points_row row; !table_broken(table) && ask_points_next(&points, &row);) {
     if (table_for_people(format) && row.n == 0 && row.failed == 0)
@@ -299,8 +298,7 @@ status print_estimates(struct store *store, const struct ask_points_choice *choi
             "clast: left out: %zu point%s without runs: not yet computed, or settings of a study that it did "
             "not run, since the law of the others tells them (--csv and --json have %s)\n",
             idle, idle == 1 ? "" : "s", idle == 1 ? "it" : "them");
-  const struct ask_doubts_choice doubts = {.campaign = choice->campaign};
-  TRY(quantity_tell_doubts(store, &doubts, OUTCOME_DEFAULT ",beta", error));
+  TRY(quantity_tell_doubts(store, OUTCOME_DEFAULT ",beta", error));
   if (legend)
     print_legend(&printing, stderr);
   return STATUS_OK;

@@ -20,8 +20,7 @@ status print_results(const struct scene *scene, const char *reference, int64_t s
 /* One row per point and window: the point's varied inputs, its runs, M_1/M and the exponents by each method, all with
  * the half widths of their 95 % intervals. Only runs that count, of the point's newest results_version. legend: people
  * see on stderr what the columns and signs mean that occur, and the known errors of the resolution. */
-status print_estimates(struct store *store, const struct ask_points_choice *choice, enum table_format format,
-                       bool legend, struct error *error);
+status print_estimates(struct store *store, enum table_format format, bool legend, struct error *error);
 
 /* ---- pools: the columns and cells that tell them apart, which are the inputs of --by and the number of points, or the
  * point ---- */

@@ -587,20 +587,8 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
 
 enum { FIRST_INPUT = 11 }; /* column of the first input in the query of ask_points_rows */
 
-/* Condition that selects the chosen points, for any table with a column point_id. */
-static void write_choice(sqlite3_str *sql, const struct ask_points_choice *choice) {
-  sqlite3_str_appendall(sql, " WHERE true");
-  if (choice->campaign)
-    sqlite3_str_appendf(sql, " AND point_id IN (SELECT point_id FROM campaign_point WHERE campaign_id = %lld)",
-                        (long long)choice->campaign);
-}
-
-status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
-                        struct error *error) {
-  sqlite3_str *where = sqlite3_str_new(NULL);
-  write_choice(where, choice);
-  *points = 0;
-  return sql_integerf(store->db, points, error, "SELECT count(*) FROM point%z", sqlite3_str_finish(where));
+status ask_points_count(struct store *store, int64_t *points, struct error *error) {
+  return sql_integer(store->db, "SELECT count(*) FROM point", 0, points, error);
 }
 
 status ask_points_known(struct store *store, int64_t point, struct error *error) {
@@ -619,8 +607,8 @@ status ask_points_known(struct store *store, int64_t point, struct error *error)
                      (long long)point, (long long)answer_integer(&answer, 1), (long long)answer_integer(&answer, 2));
 }
 
-struct answer ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest,
-                              size_t input_count, const char *const *inputs, struct error *error) {
+struct answer ask_points_rows(struct store *store, bool newest, size_t input_count, const char *const *inputs,
+                              struct error *error) {
   sqlite3_str *sql = sqlite3_str_new(NULL);
   sqlite3_str_appendall(sql, "SELECT point_id, results_version, n, failed, largest_fraction_mean, "
                              "largest_fraction_hw95, largest_fraction_low95, largest_fraction_high95, "
@@ -628,12 +616,11 @@ struct answer ask_points_rows(struct store *store, const struct ask_points_choic
                              "largest_fraction_resolution_verdict");
   for (size_t i = 0; i < input_count && i < LIMITS_AXES_OF_POOL; i++)
     sqlite3_str_appendf(sql, ", \"%w\"", inputs[i]);
-  sqlite3_str_appendall(sql, " FROM points AS p");
-  write_choice(sql, choice);
-  if (newest)
-    sqlite3_str_appendall(sql, " AND (results_version IS NULL OR results_version ="
-                               " (SELECT max(results_version) FROM point_total AS t WHERE t.point_id = p.point_id))");
-  return answer_to(store, error, "%z ORDER BY point_id, results_version", sqlite3_str_finish(sql));
+  return answer_to(store, error,
+                   "%z FROM points AS p WHERE %d OR results_version IS NULL OR results_version = (SELECT "
+                   "max(results_version) FROM point_total AS t WHERE t.point_id = p.point_id) ORDER BY point_id, "
+                   "results_version",
+                   sqlite3_str_finish(sql), !newest);
 }
 
 bool ask_points_next(struct answer *answer, struct ask_points_row *row) {

@@ -123,8 +123,7 @@ struct ask_doubts {
 
 /* Runs that count, of each point's newest results_version with such runs; 0 and NULL: all. */
 struct ask_doubts_choice {
-  int64_t campaign, point, run;
-  const char *campaign_name;
+  int64_t point, run;
   const char *where; /* an SQL condition on the view runs */
 };
 
@@ -266,22 +265,16 @@ struct ask_points_row {
                                                    until the next row */
 };
 
-/* Selects points; 0 means all. */
-struct ask_points_choice {
-  int64_t campaign;
-};
-
-/* The number of these points, with and without runs. */
-status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
-                        struct error *error);
+/* The number of points, with and without runs. */
+status ask_points_count(struct store *store, int64_t *points, struct error *error);
 
 /* STATUS_USAGE, with the known numbers, when the store has no point of this number. 0 means every point. */
 status ask_points_known(struct store *store, int64_t point, struct error *error);
 
-/* These points with the named input columns (ask_columns_axes; at most LIMITS_AXES_OF_POOL), in the order of their
+/* All points with the named input columns (ask_columns_axes; at most LIMITS_AXES_OF_POOL), in the order of their
  * numbers. Each point comes with its newest results_version only (`newest`), or once for every results_version. */
-struct answer ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest,
-                              size_t input_count, const char *const *inputs, struct error *error);
+struct answer ask_points_rows(struct store *store, bool newest, size_t input_count, const char *const *inputs,
+                              struct error *error);
 /* The next row. False at the end and after an error; then answer_end(). */
 bool ask_points_next(struct answer *answer, struct ask_points_row *row);
 

@@ -88,11 +88,6 @@ status ask_doubts(struct store *store, const struct ask_doubts_choice *choice, c
     sqlite3_str_appendf(where, " AND point_id = %lld", (long long)choice->point);
   if (choice->run)
     sqlite3_str_appendf(where, " AND run_id = %lld", (long long)choice->run);
-  if (choice->campaign || choice->campaign_name)
-    sqlite3_str_appendf(where,
-                        " AND point_id IN (SELECT point_id FROM campaign_point JOIN campaign USING (campaign_id) WHERE "
-                        "campaign_id = %lld OR name = %Q)",
-                        (long long)choice->campaign, choice->campaign_name);
   if (choice->where)
     sqlite3_str_appendf(where, " AND (%s\n)", choice->where);
   ANSWER

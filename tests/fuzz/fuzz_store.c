@@ -66,8 +66,7 @@ static void read_it(struct error *error) {
   free(dump(store, &code, error));
   told(code, error);
   told(answer_number(store, &number, error, "SELECT sum(beta) FROM estimates"), error);
-  ANSWER points = ask_points_rows(store, &(struct ask_points_choice){0}, true, 2,
-                                  (const char *const[]){"material_m", "material_k"}, error);
+  ANSWER points = ask_points_rows(store, true, 2, (const char *const[]){"material_m", "material_k"}, error);
   for (struct ask_points_row row; ask_points_next(&points, &row);)
     ;
   told(answer_end(&points), error);
