@@ -41,15 +41,14 @@ export const statisticsOfRuns = (quantity) => `SELECT point_id, results_version,
   FROM (SELECT *, ${name(quantity)} - first_value(${name(quantity)}) OVER (PARTITION BY point_id, results_version) AS d
   FROM runs WHERE counts) GROUP BY point_id, results_version ORDER BY results_version`;
 export const ranges = (names) => `SELECT ${names.map((n, i) => `min(${name(n)}) AS l${i}, max(${name(n)}) AS h${i}`).join(', ')} FROM runs WHERE counts`;
-// With the reason why tables and pictures leave an exponent out (pooled_exponent_untold() in C). A page has it, and so
-// has the view of a whole store; in an older one the fragments of a single run tell the standard error, those of several do not.
-const untold = 'SELECT reason FROM untold u WHERE u.point_id = e.point_id AND u.results_version = e.results_version';
+// With the reason why tables and pictures leave an exponent out (pooled_exponent_untold() in C). A page has it, and so has
+// the view of a store; in an older one the fragments of a single run tell the standard error, those of several do not.
 const untoldOfOlder = `CASE WHEN n < 5 THEN 'fewer than 5 fragments' WHEN beta IS NULL THEN 'fewer than 5 different masses'
   WHEN hw95 >= 2 THEN 'an interval of ± 2 or wider' WHEN hw95 IS NULL AND coalesce((SELECT max(r.standard_error) FROM estimates r
     WHERE r.point_id = e.point_id AND r.results_version = e.results_version AND r.run_id IS NOT NULL AND r.counts AND r.headline
     HAVING count(*) = 1), 1) >= 1 THEN 'no interval' END`;
-export const exponents = (page, viewed) => `SELECT point_id, results_version, n, beta AS mean, hw95, lower, upper,
-  (${page ? untold : viewed ? 'untold' : untoldOfOlder}) AS untold FROM estimates e WHERE run_id IS NULL AND headline ORDER BY results_version`;
+export const exponents = (viewed) => `SELECT point_id, results_version, n, beta AS mean, hw95, lower, upper,
+  (${viewed ? 'untold' : untoldOfOlder}) AS untold FROM estimates e WHERE run_id IS NULL AND headline ORDER BY results_version`;
 export const resolution = `SELECT point_id, half_width, verdict FROM resolution
   WHERE quantity = :quantity ORDER BY results_version`;
 
@@ -66,7 +65,6 @@ export const marks = 'SELECT engine, words FROM doubt_mark WHERE quantity = :qua
 
 export const modes = `SELECT point_id, lower_mode, upper_mode, upper_share, upper_low, upper_high FROM modes
   WHERE quantity = :quantity`;
-export const goodness = 'SELECT point_id, p FROM goodness WHERE point_id = :point';
 export const quantiles = 'SELECT share, value, low, high FROM quantile WHERE quantity = :quantity AND point_id = :point';
 
 export const spectrum = `SELECT results_version, n, lower, upper, count, count_mean, count_sd, count_hw95 FROM spectra

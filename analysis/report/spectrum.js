@@ -34,12 +34,6 @@ function curves() {
   return spectra.length ? [{name: `${plural(spectra.length, 'point')} together`, from: store(), points, complete: completeMass(store(), points), bins: pool(spectra)}] : [];
 }
 
-// p of the power law, where clast has judged it.
-function goodnessOf(from, point) {
-  const p = has(from, 'goodness') ? ask(from, questions.goodness, {point})[0]?.p ?? null : null;
-  return p === null ? '' : `, p ${p < 0.001 ? '< 0.001' : `= ${number(p, 2)}`}${p < 0.1 ? ' (a power law does not fit)' : ''}`;
-}
-
 // The line of m^-beta that holds as many fragments per run in its window as the fit was made from.
 function fitOf(curve) {
   if (curve.points.length !== 1) return null;
@@ -50,7 +44,7 @@ function fitOf(curve) {
   const power = 1 - fit.mean;
   const integral = Math.abs(power) < 1e-9 ? Math.log(upper / fit.lower) : (upper ** power - fit.lower ** power) / power;
   const factor = fit.n / curve.points[0].n / integral;
-  return {text: `β = ${withError(fit.mean, fit.hw95)} from ${number(fit.lower, 2)} ${curve.from.facts.mass_unit ?? 'kg'} on${goodnessOf(curve.from, fit.point_id)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
+  return {text: `β = ${withError(fit.mean, fit.hw95)} from ${number(fit.lower, 2)} ${curve.from.facts.mass_unit ?? 'kg'} on`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
 }
 
 function marksOf(curve) {

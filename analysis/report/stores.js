@@ -44,7 +44,7 @@ export function answer(store, sql, parameters, most) {
 export const has = (store, table) => store.tables.has(table);
 
 // The exponent of each point; where tables and pictures leave it out, no value but the reason, `untold`.
-export const exponents = (store) => newest(ask(store, questions.exponents(has(store, 'untold'), store.viewed))).map((row) => (row.untold === null ? row : {...row, mean: null, hw95: null}));
+export const exponents = (store) => newest(ask(store, questions.exponents(store.viewed))).map((row) => (row.untold === null ? row : {...row, mean: null, hw95: null}));
 
 // The newest version of results of each point; rows come in the order of versions.
 export function newest(rows) {

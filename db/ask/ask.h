@@ -656,8 +656,6 @@ status ask_ejecta(struct store *store, const struct ask_pool *pool, struct ask_e
  *   doubt                   of each point the runs that count with words in `warnings`
  *   doubt_mark              the results that these words mark (`marks`: which of the words) or withhold; also beta
  *   doubt_word              what each condition says
- *   goodness                p of the power law at each point, of the first points until it would take too long
- *   untold                  why tables and pictures leave out the exponent of a point
  *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
  *   campaign, session, attempt, axis, column_doc   of the store's tables
  *   question                the canned queries that work here

@@ -23,8 +23,6 @@ enum {
   SPECTRUM = 12000,     /* rows of the table spectra */
   QUANTILES = 200,      /* points with quantiles */
   JUDGED_RUNS = 100000, /* runs of a point in the test for two modes: the first ones */
-  JUDGED = 8000,        /* fragments of points whose fit is tested: some 5 s of CPU time */
-  DRAWS = 2500,         /* samples per test, as `clast exponents` draws by default; they give p within 0.01 */
   ATTEMPTS = 500,       /* failed attempts, and failed runs */
 };
 
@@ -507,68 +505,6 @@ static status add_quantiles(struct ask_page *page, struct store *store, struct e
   return ask_pools_end(&pools);
 }
 
-/* ---- does a power law fit the fragments of a point? the same test as in `clast exponents` ---- */
-
-/* *enough: the next test would take too long. */
-static status add_fit(struct ask_page *page, const struct ask_pool *pool, int64_t *fragments, bool *enough,
-                      struct error *error) {
-  const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
-  const struct pooled_runs *runs = &pool->data.runs;
-  struct pooled_exponent fit;
-  struct pooled_goodness goodness;
-  if (!(lower > 0))
-    return STATUS_OK; /* the store has no estimates of its runs */
-  TRY(pooled_exponent(runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &fit, error));
-  if (!isfinite(fit.fit.beta))
-    return STATUS_OK;
-  *fragments += fit.fit.n;
-  *enough = *fragments > JUDGED;
-  if (*enough)
-    return STATUS_OK;
-  TRY(pooled_goodness(runs, lower, DRAWS, &goodness, error));
-  return ADD_ROW(page, error, "goodness", sql_of_integer(pool->data.point_id), sql_of_integer(fit.fit.n),
-                 sql_of_real(goodness.p));
-}
-
-static status add_goodness(struct ask_page *page, struct store *store, struct error *error) {
-  int64_t fragments = 0; /* tested so far */
-  bool enough = false;
-  ASK_POOLS pools = ask_pools(store, &(struct ask_pool_choice){0}, NULL, error);
-  for (const struct ask_pool *pool; !enough && (pool = ask_pools_next(&pools));)
-    TRY(add_fit(page, pool, &fragments, &enough, error));
-  return ask_pools_end(&pools);
-}
-
-/* ---- exponents that tables and pictures leave out, with the reason ---- */
-
-/* The estimates have the interval. Without it the fit of the fragments decides, which is made again. */
-static status untold_reason(struct store *store, const struct answer *row, const char **reason, struct error *error) {
-  struct pooled_exponent fit = {.fit = {.method = ESTIMATES_HEADLINE_METHOD,
-                                        .n = answer_integer(row, 2),
-                                        .beta = answer_real(row, 3)},
-                                .interval = {.half_width = answer_real(row, 4)}};
-  if (isfinite(fit.fit.beta) && isnan(fit.interval.half_width))
-    TRY(point_exponent(store, answer_integer(row, 0), answer_integer(row, 1),
-                       (enum exponent_method)ESTIMATES_HEADLINE_METHOD,
-                       (enum estimates_window)ESTIMATES_HEADLINE_WINDOW, 0.95, &fit, error));
-  *reason = pooled_exponent_untold(&fit);
-  return STATUS_OK;
-}
-
-static status add_untold(struct ask_page *page, struct store *store, struct error *error) {
-  ANSWER rows = answer_to(store, error,
-                          "SELECT point_id, results_version, n, beta, hw95 FROM estimates WHERE run_id IS NULL AND "
-                          "headline ORDER BY point_id, results_version");
-  while (answer_next(&rows)) {
-    const char *reason;
-    TRY(untold_reason(store, &rows, &reason, error));
-    if (reason)
-      TRY(ADD_ROW(page, error, "untold", sql_of_integer(answer_integer(&rows, 0)),
-                  sql_of_integer(answer_integer(&rows, 1)), sql_of_text(reason)));
-  }
-  return answer_end(&rows);
-}
-
 /* The canned queries that the page's tables can answer. */
 static status add_questions(struct ask_page *page, struct error *error) {
   for (size_t i = 0; i < ask_canned_count(); i++) {
@@ -598,8 +534,6 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
                   "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
                   "CREATE TABLE doubt_word (engine, word, sentence, results, withheld);"
                   "CREATE TABLE quantile (point_id, quantity, share, value, low, high);"
-                  "CREATE TABLE goodness (point_id, n, p);"
-                  "CREATE TABLE untold (point_id, results_version, reason);"
                   "BEGIN",
                   doing, error));
   for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
@@ -618,8 +552,6 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
       "attempt", EXACT));
   TRY(add_runs(page, store, error));
   TRY(add_quantiles(page, store, error));
-  TRY(add_goodness(page, store, error));
-  TRY(add_untold(page, store, error));
   /* a question to the store may have the table's name */
   TRY(sql_execute(page->store.db, "CREATE VIEW run AS SELECT * FROM runs", doing, error));
   return add_questions(page, error);
