@@ -122,8 +122,7 @@ enum picture_view {
 };
 struct picture_look {
   enum picture_view view;
-  int axis; /* line of sight: 0: x (y to the right, z up), 1: y (x right, z up), 2: z (x right, y up); -1: for a view
-               from outside, the axis that shows the heaviest fragments best, else y */
+  int axis;     /* line of sight: 0: x (y to the right, z up), 1: y (x right, z up), 2: z (x right, y up) */
   double plane; /* m, place of the cut along the axis; NaN: the centre of mass of the heaviest fragment, or of all
                    particles */
   const char *title, *subtitle; /* NULL: none */

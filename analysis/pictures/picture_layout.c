@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "schemas/memory.h"
 
@@ -127,61 +126,5 @@ status picture_layout_apart(const struct picture_cloud *cloud, size_t count, str
   for (size_t p = 0; p < l.pieces; p++)
     if (l.piece[p].count)
       place(&l, p);
-  return STATUS_OK;
-}
-
-/* A raster of the visible fragments: the fragment in front, and the cells that each fragment covers. */
-enum { SEEN = 256 };
-struct raster {
-  double x, y, cell; /* lower left corner, side of a cell, m */
-  int32_t front[SEEN * SEEN];
-  unsigned char covered[SEEN * SEEN]; /* cells covered by the current fragment */
-};
-
-static void paint(struct raster *raster, const struct picture_layout_disc *d, int32_t fragment, bool front) {
-  const double reach = d->radius / raster->cell, x = (d->x - raster->x) / raster->cell,
-               y = (d->y - raster->y) / raster->cell;
-  for (long j = lround(fmax(ceil(y - reach), 0)); j <= y + reach && j < SEEN; j++)
-    for (long i = lround(fmax(ceil(x - reach), 0)); i <= x + reach && i < SEEN; i++) {
-      if (hypot((double)i - x, (double)j - y) > reach)
-        continue;
-      if (front)
-        raster->front[j * SEEN + i] = fragment;
-      else
-        raster->covered[j * SEEN + i] = 1;
-    }
-}
-
-status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
-                              size_t fragments, double *visible) {
-  OWNED struct raster *raster = NULL;
-  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-  TRY(memory_array(&raster, 1, sizeof *raster, "", NULL));
-  for (size_t k = 0; k < count; k++) {
-    low[0] = fmin(low[0], discs[k].x - discs[k].radius);
-    low[1] = fmin(low[1], discs[k].y - discs[k].radius);
-    high[0] = fmax(high[0], discs[k].x + discs[k].radius);
-    high[1] = fmax(high[1], discs[k].y + discs[k].radius);
-  }
-  raster->x = low[0];
-  raster->y = low[1];
-  raster->cell = fmax(fmax(high[0] - low[0], high[1] - low[1]), 1e-300) / (SEEN - 1);
-  for (size_t i = 0; i < SEEN * SEEN; i++)
-    raster->front[i] = -1;
-  for (size_t k = 0; k < count; k++)
-    paint(raster, &discs[k], cloud->part[discs[k].id] >= PICTURE_DUST ? -1 : (int32_t)cloud->fragment[discs[k].id],
-          true);
-  for (size_t f = 0; f < fragments; f++) {
-    size_t covered = 0, seen = 0;
-    memset(raster->covered, 0, sizeof raster->covered);
-    for (size_t k = 0; k < count; k++)
-      if (cloud->fragment[discs[k].id] == (int64_t)f)
-        paint(raster, &discs[k], (int32_t)f, false);
-    for (size_t i = 0; i < SEEN * SEEN; i++) {
-      covered += raster->covered[i];
-      seen += raster->covered[i] && raster->front[i] == (int32_t)f;
-    }
-    visible[f] = covered ? (double)seen / (double)covered : 1;
-  }
   return STATUS_OK;
 }

@@ -12,8 +12,3 @@ struct picture_layout_disc {
  * from its centre in their own direction until they do not overlap. Every disc's particle must belong to a fragment.
  * STATUS_MEMORY. */
 status picture_layout_apart(const struct picture_cloud *cloud, size_t count, struct picture_layout_disc *discs);
-
-/* Computes the visible share of each fragment's outline when all discs are drawn in their order: visible[f] for
- * fragments 0 .. fragments - 1; 1 for a fragment without discs. STATUS_MEMORY. */
-status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
-                              size_t fragments, double *visible);

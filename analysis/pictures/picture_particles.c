@@ -24,8 +24,6 @@ struct scene {
   double view[4];
   bool measuring;  /* only the frame is wanted */
   size_t left_out; /* number of particles outside the frame */
-  int axis;        /* axis of the line of sight */
-  double hidden;   /* mass share of large fragments that are hidden */
   char label[160];
   enum picture_ramp ramp;
 };
@@ -113,7 +111,7 @@ static int by_depth(const void *a, const void *b) {
 static bool make_disc(const struct scene *s, size_t i, struct picture_layout_disc *disc) {
   const struct picture_cloud *c = s->cloud;
   const enum picture_view view = s->look->view;
-  const int along = s->axis, right = along == 0 ? 1 : 0, up = along == 2 ? 1 : 2;
+  const int along = s->look->axis, right = along == 0 ? 1 : 0, up = along == 2 ? 1 : 2;
   if (view == PICTURE_APART && (c->part[i] >= PICTURE_DUST || c->fragment[i] < 0))
     return false;
   const double *at = c->position[i];
@@ -137,42 +135,6 @@ static void choose_discs(struct scene *s) {
   for (size_t i = 0; i < s->cloud->n; i++)
     s->discs += make_disc(s, i, &s->disc[s->discs]);
   qsort(s->disc, s->discs, sizeof *s->disc, by_depth);
-}
-
-/* For a view from outside: the visible share, 0 to 1, of the least visible of the heaviest fragments; and the mass
- * share of hidden ones. */
-static status look_at_largest(struct scene *s, double *least) {
-  enum { HEAVIEST = 4 };
-  double visible[HEAVIEST], total, single;
-  size_t count = 0;
-  while (count < HEAVIEST && count < s->fragments && s->count[count] >= RESOLVED)
-    count++;
-  weigh(s->cloud, &total, &single);
-  *least = 1;
-  s->hidden = 0;
-  const status code = picture_layout_visible(s->cloud, s->discs, s->disc, count, visible);
-  for (size_t f = 0; code == STATUS_OK && f < count; f++) {
-    *least = fmin(*least, visible[f]);
-    s->hidden += visible[f] < 0.03 ? s->mass[f] / total : 0;
-  }
-  return code;
-}
-
-static status turn_body(struct scene *s) {
-  double best = -1, least;
-  int axis = s->look->axis;
-  for (int k = 0; k < 3 && s->look->axis < 0; k++) {
-    s->axis = (k + 1) % 3; /* y first: it is kept unless another is better */
-    choose_discs(s);
-    TRY(look_at_largest(s, &least));
-    if (least > best + 0.01) {
-      best = least;
-      axis = s->axis;
-    }
-  }
-  s->axis = axis;
-  choose_discs(s);
-  return look_at_largest(s, &least);
 }
 
 static void cover(double view[4], double x, double y, double radius) {
@@ -479,9 +441,6 @@ static void note(cairo_t *cairo, const struct scene *s, double left, double y, d
     grey += isfinite(s->cloud->value[s->disc[k].id]) ? 0u : 1u;
   if (grey)
     text_append(text, sizeof text, "Grey: broken matter, which bears no tension. ");
-  if (s->hidden > 0)
-    text_append(text, sizeof text, "Fragments with %.3g %% of the mass are hidden: see the view apart. ",
-                100 * s->hidden);
   if (s->left_out)
     text_append(text, sizeof text,
                 s->left_out == 1 ? "%zu particle is beyond the frame." : "%zu particles are beyond the frame.",
@@ -495,7 +454,7 @@ static void draw_on_sheet(struct picture_sheet *sheet, struct scene *s) {
   draw_discs(cairo, s);
   cairo_restore(cairo);
   if (sheet->drawn == 1) {
-    axes(cairo, s->axis, sheet->gap + 0.5 * font, sheet->below + 3 * font, font);
+    axes(cairo, s->look->axis, sheet->gap + 0.5 * font, sheet->below + 3 * font, font);
     picture_canvas_scale_bar(cairo, sheet->gap + 7 * font, sheet->below + 3 * font, scale, sheet->wide, font);
     if (s->cloud->value)
       picture_canvas_colour_bar(cairo, s->ramp, sheet->right, sheet->top, 1.2 * font, fmin(sheet->tall, 26 * font),
@@ -521,7 +480,7 @@ static status draw(const char *path, double width, struct scene *s, struct error
   draw_discs(cairo, s);
   cairo_restore(cairo);
   picture_canvas_head(cairo, gap, width - 2 * gap, font, look->title, 0.95 * font, look->subtitle);
-  axes(cairo, s->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
+  axes(cairo, s->look->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
   picture_canvas_scale_bar(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
   note(cairo, s, gap, top + tall + 5.7 * font, width - 2 * gap, font);
   if (s->cloud->value)
@@ -535,10 +494,7 @@ static status draw(const char *path, double width, struct scene *s, struct error
 /* Chooses the discs, frame and colours. STATUS_MEMORY. */
 static status choose(struct scene *s) {
   TRY(gather(s));
-  s->axis = s->look->axis < 0 ? 1 : s->look->axis;
   choose_discs(s);
-  if (s->look->view == PICTURE_OUTSIDE && !s->look->frame)
-    TRY(turn_body(s));
   if (s->look->view == PICTURE_APART && s->discs > 0)
     TRY(picture_layout_apart(s->cloud, s->discs, s->disc));
   if (s->discs == 0)
@@ -554,7 +510,7 @@ static status choose(struct scene *s) {
     cover(frame->view, s->view[2], s->view[3], 0);
     frame->low = fmin(frame->low, s->low);
     frame->high = fmax(frame->high, s->high);
-    frame->plane = isfinite(frame->plane) ? frame->plane : s->middle[s->axis];
+    frame->plane = isfinite(frame->plane) ? frame->plane : s->middle[s->look->axis];
   } else if (frame && s->cloud->value) {
     choose_range(s, &frame->low, 2);
     choose_unit(s, fmax(fabs(s->low), fabs(s->high)));
@@ -564,7 +520,7 @@ static status choose(struct scene *s) {
 
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
                          const struct picture_look *look, struct error *error) {
-  if (look->axis > 2)
+  if (look->axis < 0 || look->axis > 2)
     return status_fail(error, STATUS_USAGE, "%s: there is no axis %d", path, look->axis);
   for (size_t i = 0; i < cloud->n; i++)
     if (cloud->fragment[i] >= (int64_t)cloud->n)

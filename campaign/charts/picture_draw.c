@@ -170,10 +170,7 @@ static status choose_look(const struct picture_choice *options, struct picture_l
   }
   if (axis && (strlen(axis) != 1 || !strchr("xyz", axis[0])))
     return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
-  if (axis)
-    look->axis = axis[0] - 'x';
-  else
-    look->axis = look->view == PICTURE_OUTSIDE ? -1 : 1; /* -1: an oblique view */
+  look->axis = axis ? axis[0] - 'x' : 1;
   if (!options->at)
     return STATUS_OK;
   if (look->view != PICTURE_CUT)

@@ -627,7 +627,7 @@ static void pixels_are_pinned(void **state) {
   assert_int_equal(picture_particles(at("cut.png"), 480, &cloud, &look, NULL), STATUS_OK);
   look = (struct picture_look){.view = PICTURE_OUTSIDE, .axis = 2, .plane = NAN, .title = "Outside"};
   assert_int_equal(picture_particles(at("outside.png"), 480, &cloud, &look, NULL), STATUS_OK);
-  look = (struct picture_look){.view = PICTURE_APART, .axis = -1, .plane = NAN, .title = "Apart"};
+  look = (struct picture_look){.view = PICTURE_APART, .axis = 1, .plane = NAN, .title = "Apart"};
   assert_int_equal(picture_particles(at("apart.png"), 480, &cloud, &look, NULL), STATUS_OK);
   cloud.value = value;
   look = (struct picture_look){.view = PICTURE_OUTSIDE, .axis = 0, .plane = NAN, .quantity = "damage", .unit = "1"};

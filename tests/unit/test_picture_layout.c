@@ -1,4 +1,4 @@
-/* Fragments side by side: none hides another, the heaviest is kept; and the visible part of fragments in a heap. */
+/* Fragments side by side: none hides another, the heaviest is kept. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -38,27 +38,10 @@ static void none_hides_another(void **state) {
       assert_true(fragment[i] == fragment[j] ||
                   hypot(discs[i].x - discs[j].x, discs[i].y - discs[j].y) > discs[i].radius + discs[j].radius);
   }
-  double visible[PIECES];
-  assert_int_equal(picture_layout_visible(&cloud, DISCS, discs, PIECES, visible), STATUS_OK);
-  for (int f = 0; f < PIECES; f++)
-    assert_true(visible[f] > 0.999);
   assert_int_equal(picture_layout_apart(&cloud, 0, discs), STATUS_OK);
 }
 
-/* Three discs, drawn in this order: the second covers the first, single particles the left half of the third. */
-static void what_can_be_seen(void **state) {
-  (void)state;
-  int64_t fragment[4] = {0, 1, 2, 3}, part[4] = {PICTURE_CORE, PICTURE_CORE, PICTURE_CORE, PICTURE_DUST};
-  const struct picture_cloud cloud = {.n = 4, .fragment = fragment, .part = part};
-  const struct picture_layout_disc discs[4] = {{0, 0, 1, 0, 0}, {0, 0, 1.2, 1, 1}, {5, 0, 1, 2, 2}, {4, 0, 1, 3, 3}};
-  double visible[4];
-  assert_int_equal(picture_layout_visible(&cloud, 4, discs, 4, visible), STATUS_OK);
-  assert_true(visible[0] == 0 && visible[1] == 1);
-  /* a lens of two discs of radius 1 at a distance of 1: 2 pi/3 - sqrt(3)/2 of pi */
-  assert_true(fabs(visible[2] - (1 - (2 * M_PI / 3 - sqrt(3) / 2) / M_PI)) < 0.02);
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(none_hides_another), cmocka_unit_test(what_can_be_seen)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(none_hides_another)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
