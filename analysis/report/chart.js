@@ -24,12 +24,11 @@ const views = new Map(); // by figure
 export const heightWith = (names) => 340 + (names.length > 1 ? 16 * names.length : 0);
 
 // Draws a figure: the chart, a caption, and what can be taken away. about: {name, description, caption, command, columns,
-// rows, keys}; command: one, or one of each store; columns and rows are the numbers that the chart shows; with keys it takes
-// the keyboard's focus.
+// rows}; command: one, or one of each store; columns and rows are the numbers that the chart shows.
 export async function draw(figure, spec, about) {
   views.get(figure)?.finalize();
   views.delete(figure);
-  const chart = element('div', {class: 'chart', role: about.keys ? 'application' : 'img', tabindex: about.keys ? 0 : null, 'aria-label': about.description});
+  const chart = element('div', {class: 'chart', role: 'img', 'aria-label': about.description});
   const tools = element('div', {class: 'tools'},
     element('button', {type: 'button', click: async () => download(`${about.name}.svg`, 'image/svg+xml', await views.get(figure).toSVG())}, 'SVG'),
     element('button', {type: 'button', click: () => download(`${about.name}.csv`, 'text/csv', csv(about.columns, about.rows))}, 'CSV'),

@@ -1,8 +1,7 @@
-// The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click, a brush or keys,
-// or in the table of points.
+// The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click or a brush, or
+// in the table of points.
 import {body, element, fill, select, table} from './elements.js';
 import {COLOURS, NUMBER, draw, logAxis, nothing, scale, wrapped} from './chart.js';
-import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
 import {changed, chosenPoints, drawnPoints, state, store} from './state.js';
 import {interval} from './statistics.js';
@@ -81,16 +80,6 @@ function axisOf(column, rows, title) {
   return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: NUMBER}}};
 }
 
-// Where a row stands on an axis, as a number: the place of its value, or how far along the scale it is.
-function alongAxis(column, rows) {
-  if (!column) return () => 0;
-  const axis = axisOf(column, rows, '');
-  if (axis.discrete) return (row) => axis.encoding.sort.indexOf(row[column]);
-  const of = axis.encoding.scale.type === 'log' ? Math.log : Number, places = rows.map((row) => of(row[column]));
-  const low = Math.min(...places), range = Math.max(...places) - low || 1;
-  return (row) => (of(row[column]) - low) / range;
-}
-
 function tooltip(columns, title) {
   return [{field: 'point_id', title: 'point'}, ...columns.map(([field, name]) => ({field, title: name})),
     {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}, {field: 'modesText', title: 'modes'},
@@ -141,16 +130,8 @@ function data(quantity) {
   }));
 }
 
-const PARAMETERS = [{name: 'chosen', value: []}, {name: 'framed', value: []}]; // points; those under the keys' frame
-const isChosen = 'indexof(chosen, datum.point_id) >= 0', isFramed = 'indexof(framed, datum.point_id) >= 0';
-
-// Dark on light, so that it is seen on any colour.
-function frame(place, grid) {
-  const mark = grid ? {type: 'rect', filled: false} : {type: 'point', filled: false, size: 420};
-  const line = (stroke, strokeWidth, strokeDash) => ({transform: [{filter: isFramed}],
-    mark: {...mark, stroke, strokeWidth, strokeDash, tooltip: null}, encoding: place});
-  return [line('white', 5, [1, 0]), line('black', 3, [6, 3])];
-}
+const PARAMETERS = [{name: 'chosen', value: []}]; // points
+const isChosen = 'indexof(chosen, datum.point_id) >= 0';
 
 // What a cell may hold, the widest text first; the last has the interval in a line of its own.
 function cellTexts(row) {
@@ -187,7 +168,6 @@ function planeSpec(rows, title) {
   if (rows.some((row) => row.twoModes))
     layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: fitting === 2 ? 22 : 15, fontSize: 12, tooltip: null},
       encoding: {...place, color: {condition: {test: `datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
-  layers.push(...frame(place, grid));
   const height = y.discrete ? Math.min(560, Math.max(300, 130 + 40 * new Set(rows.map((row) => row[state.y])).size)) : 420;
   return {params: PARAMETERS, data: {values: rows.map((row, i) => ({...row, cell: texts[i][fitting ?? 2]}))}, height, layer: layers};
 }
@@ -206,8 +186,7 @@ function lineSpec(rows, title) {
         strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
         tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}},
     {transform: [{filter: 'datum.doubt'}], mark: {type: 'text', text: '!', dx: 12, fontSize: 14, fontWeight: 'bold', tooltip: null}, encoding: {x: place, y}},
-    {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}},
-    ...frame({x: place, y}, false)]};
+    {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}}]};
 }
 
 // A brush over cells lists values, one over a scale has two ends.
@@ -242,27 +221,6 @@ function listen(view) {
     const ids = new Set(state.chosen);
     if (!ids.delete(id)) ids.add(id);
     choose(ids);
-  });
-}
-
-// What stands under the frame of the keys, in words.
-function tellFramed(place) {
-  plane.view?.signal('framed', place?.ids ?? []).run();
-  const rows = place ? plane.rows.filter((row) => place.ids.includes(row.point_id)) : [], [row] = rows;
-  const inputs = [state.x, state.y].filter(Boolean).map((input) => row && `${label(state.stores, input)} ${number(row[input])}`);
-  document.getElementById('framed').textContent = !row ? '' : `${inputs.join(', ')}: ${rows.length > 1 ? plural(rows.length, 'point')
-    : `${row.shown} (${plural(row.n ?? 0, 'run')})${row.twoModes ? '; two modes' : ''}`}${rows.every(({point_id}) => state.chosen.has(point_id)) ? '; chosen' : ''}`;
-}
-
-function takeKeys(figure, rows) {
-  const places = placesOf(rows, alongAxis(state.x, rows), alongAxis(state.y, rows));
-  listenToKeys(figure.querySelector('.chart'), places, {
-    chosen: () => state.chosen,
-    choose: (ids) => {
-      choose(ids);
-      tellFramed(places.find((place) => place.ids.includes(plane.view.signal('framed')[0])));
-    },
-    show: tellFramed,
   });
 }
 
@@ -326,21 +284,19 @@ export async function showPlane() {
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
   if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows, state.quantity, true)}`);
   const spec = !state.x ? {layer: []} : state.y ? planeSpec(rows, title) : lineSpec(known, title), texts = spec.layer.some(({encoding}) => encoding.text?.field === 'cell');
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${state.x ? doubtSentence(store(), rows, state.quantity, true) : ''}`;
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With the keyboard: in the table of points below.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${state.x ? doubtSentence(store(), rows, state.quantity, true) : ''}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows, false)}${doubtSentence(store(), rows, state.quantity, true)}`);
     return;
   }
   const inputs = [state.x, state.y].filter(Boolean);
   const view = await draw(figure, spec, {
-    name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
-    keys: true,
+    name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}; the table of points below has the numbers`,
     caption, command: commandOf(at), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'low95', 'high95', 'weak', 'untold', 'resolution', 'doubtful', 'doubts'],
     rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.low95, row.high95, row.weak, row.untold, row.resolution, row.doubt?.doubtful ?? 0, wordsOf(row.doubt).join(', ')]),
   });
   plane.view = view;
   listen(view);
-  takeKeys(figure, state.y ? rows : known);
   showChosen();
 }
 

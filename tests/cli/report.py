@@ -113,31 +113,7 @@ def brush(browser):
 
 
 def keyboard(browser):
-    """Only keys: from the last choice above it to the plane, over its cells, into the table, to a run."""
-    browser.js("document.querySelector('#choices [name=y]').focus()")
-    browser.key("Tab")
-    assert browser.js("document.activeElement.matches('#plane-chart .chart')"), "the plane takes no focus"
-    for key in ("ArrowLeft", "ArrowUp", "ArrowUp", "ArrowLeft"): # at an end it stays
-        browser.key(key)
-    corner = text(browser, "#framed")
-    with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as db:
-        where = "from points where threshold_angle < 0.05 and threshold_strain > 0.03"
-        (mean, point) = db.execute(f"select largest_fraction_mean, point_id {where}").fetchone()
-    assert " 2, " in corner and " 5:" in corner and f": {mean:.2g} (0 to " in corner, (corner, mean)
-    browser.key(" ")
-    assert (point in chosen(browser)) == ("chosen" in text(browser, "#framed")), text(browser, "#framed")
-    browser.key(" ")
-    before = point in chosen(browser)
-    browser.key("Enter")
-    assert (point in chosen(browser)) != before, "Enter does what the space bar does"
-    browser.key("ArrowRight", shift=True)
-    wait_chosen(browser, 2)
-    assert point in chosen(browser) and "angle 2 deg, strain 5 %" in text(browser, "#spectrum figcaption")
-    browser.key("ArrowDown", shift=True)
-    wait_chosen(browser, 4)
-    browser.key("ArrowUp", shift=True)
-    wait_chosen(browser, 2)
-    done("keys move over the plane, choose a cell and a block of cells, and say what is there")
+    """Only keys: in the table of points, and to a run."""
     browser.js("document.querySelector('#points').open = true; document.querySelector('#points input:not(:checked)').focus()")
     browser.key(" ")
     wait_chosen(browser, 3)

@@ -278,7 +278,7 @@ JS
   expect 0 "$clast" report levels.db --studies
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 69
+  done_after 68
 else
   done_after 44
 fi
