@@ -222,44 +222,18 @@ void chart_block_end(struct chart *chart) {
 
 /* ---- the script ---- */
 
-/* The text of a template, from page->templates if given, else the compiled-in one. The caller frees it. */
-static status read_template(const struct picture_page *page, const char *name, char **text, struct error *error) {
-  *text = NULL;
-  if (!page->templates) {
-    for (const struct chart_template *t = chart_templates; t->name; t++)
-      if (strcmp(t->name, name) == 0)
-        *text = memory_small_text(t->text);
-    return STATUS_OK;
-  }
-  char path[LIMITS_PATH];
-  enum { MOST = 1 << 20 };
-  for (const struct chart_template *t = chart_templates; t->name; t++) { /* a kept script replaces none of them */
-    snprintf(path, sizeof path, "%s/%s.gp", page->templates, t->name);
-    TRY(file_input(path, error));
-  }
-  snprintf(path, sizeof path, "%s/%s.gp", page->templates, name);
-  FILE *in = fopen(path, "r");
-  if (!in)
-    return status_fail(error, STATUS_MISSING,
-                       "%s: there is no such template. Copy all templates from share/clast/templates of the "
-                       "installation, or from analysis/pictures/templates of the source, and change the copies",
-                       path);
-  const status code = memory_array(text, MOST + 1, 1, path, error);
-  if (!code)
-    (*text)[fread(*text, 1, MOST, in)] = '\0';
-  fclose(in);
-  return code;
+static const char *template_of(const char *name) {
+  const struct chart_template *t = chart_templates;
+  while (strcmp(t->name, name) != 0)
+    t++;
+  return t->text;
 }
 
 /* Writes variables, frame.gp and the template. */
 static status write_script(struct chart *chart, double height, char **script, size_t *size, struct error *error) {
   const struct picture_page *page = chart->page;
   const char *ending = strrchr(page->path, '.') + 1;
-  OWNED char *frame = NULL;
-  OWNED char *template = NULL;
   char file[STEM + 40];
-  TRY(read_template(page, "frame", &frame, error));
-  TRY(read_template(page, chart->template, &template, error));
   snprintf(file, sizeof file, "./%s.%s", chart->stem, ending);
   chart_text(chart, "output_file", file);
   chart_text(chart, "ending", ending);
@@ -273,7 +247,7 @@ static status write_script(struct chart *chart, double height, char **script, si
   fprintf(out,
           "# A chart of clast for gnuplot 5.4. Change what you like, then run gnuplot on this file in its folder.\n\n"
           "# What this chart shows. The numbers are in the data file.\n%s\n%s\n%s",
-          chart->variables_text, frame, template);
+          chart->variables_text, template_of("frame"), template_of(chart->template));
   if (!text_close(out, script) || ferror(chart->data) || ferror(chart->variables))
     return status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
   return STATUS_OK;
@@ -333,8 +307,7 @@ static status refuse(const struct chart *chart, int end, struct error *error) {
   for (size_t i = 0; i < count; i++)
     if ((unsigned char)text[i] < ' ')
       text[i] = ' ';
-  return status_fail(error, chart->page->templates ? STATUS_CONTENT : STATUS_IO,
-                     "%s: gnuplot drew nothing (exit %d): %s", chart->page->path, end,
+  return status_fail(error, STATUS_IO, "%s: gnuplot drew nothing (exit %d): %s", chart->page->path, end,
                      *text ? text : "it does not say why; is the disk full?");
 }
 

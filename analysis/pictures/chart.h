@@ -1,7 +1,6 @@
 /* Charts by gnuplot: a template, its words and numbers, and the data. The functions are for picture.c only.
  *
- * The templates are analysis/pictures/templates/NAME.gp. They are compiled in; a folder with files of the same names
- * replaces them. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
+ * The templates are analysis/pictures/templates/NAME.gp. They are compiled in. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
  * separate folder, where gnuplot runs. The script holds text from users, such as the names of campaigns, only as quoted
  * strings that gnuplot does not interpret, and it names only files of that folder. */
 #pragma once
@@ -15,8 +14,7 @@
 struct picture_page {
   const char *path;
   double width;
-  bool keep_script;      /* keep NAME.gp and NAME.dat beside NAME.png, so that gnuplot can draw it again */
-  const char *templates; /* folder with changed templates; NULL: the compiled-in ones */
+  bool keep_script; /* keep NAME.gp and NAME.dat beside NAME.png, so that gnuplot can draw it again */
 };
 /* The words of a chart; NULL: none. Long ones are cut into lines. */
 struct picture_words {
@@ -54,8 +52,7 @@ void chart_row(struct chart *chart, size_t count, const double *values);
 void chart_block_end(struct chart *chart);
 
 /* Draws and frees the chart. The file appears under its name only when it is complete. height: pixels for the width of
- * the page. STATUS_MISSING: no gnuplot on this machine, or no such template in its folder of templates. STATUS_USAGE:
- * the file name's ending is not known. STATUS_CONTENT: gnuplot refuses a template of that folder. STATUS_IO. */
+ * the page. STATUS_MISSING: no gnuplot on this machine. STATUS_USAGE: the file name's ending is not known. STATUS_IO. */
 status chart_draw(struct chart *chart, double height, struct error *error);
 
 /* The compiled-in templates (generated at build time); an entry with NULL ends the list. */

@@ -11,7 +11,7 @@
 enum { WIDTH = 900 };
 
 struct picture_page charts_page(const char *path, const struct chart_options *options) {
-  return (struct picture_page){path, WIDTH, options && options->keep_script, options ? options->templates : NULL};
+  return (struct picture_page){path, WIDTH, options && options->keep_script};
 }
 
 void charts_label(const char *column, char label[CHARTS_LABEL]) {

@@ -10,16 +10,12 @@
 
 struct chart_options {
   bool keep_script;
-  const char *templates;
 };
 /* clang-format off */
 #define CHART_OPTIONS(type_, member_)                                                                                  \
   OPTION_ROW_FLAG("keep-script", 0, type_, member_.keep_script,                                                        \
                   .doc = "Leave NAME.gp and NAME.dat beside the chart NAME.png: change them, and gnuplot "     \
-                         "draws it again."),                                                                          \
-  OPTION_ROW_TEXT("templates", 0, "FOLDER", type_, member_.templates, NULL,                                            \
-                  .doc = "Draw with the gnuplot templates of this folder: your changed copies of "             \
-                         "share/clast/templates.")
+                         "draws it again.")
 /* clang-format on */
 
 /* A page of the usual width. */

@@ -9,7 +9,7 @@ expect 0 cmake --install "$build" --prefix "$work/prefix"
 for file in bin/clast share/man/man1/clast.1 share/bash-completion/completions/clast share/zsh/site-functions/_clast \
   share/fish/vendor_completions.d/clast.fish share/clast/examples/demo.yaml share/clast/examples/slurm.sh \
   share/clast/schemas/campaign.schema.json share/clast/schemas/results.sql share/clast/python/clast.py \
-  share/clast/templates/lines.gp share/doc/clast/copyright; do
+  share/doc/clast/copyright; do
   [ -s "prefix/$file" ] || fail "not installed: $file"
 done
 ok "installed files"

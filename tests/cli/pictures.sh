@@ -352,15 +352,6 @@ sed -i "s/^title_text = .*/title_text = 'mine'/" kept/map.gp
 (cd kept && gnuplot map.gp) || fail "the kept script does not run"
 grep -q mine kept/map.svg || fail "the changed title is not drawn"
 same "$(grep -c '<path' kept/map.svg)" "$(grep -c '<path' first.svg)" "shapes of the chart drawn again"
-cp -r "$source/analysis/pictures/templates" changed
-sed -i 's/0x0072B2/0x123456/' changed/frame.gp
-expect 0 "$clast" plot small.db lines.svg -x strain --templates changed
-grep -q 'rgb( *18, *52, *86)' lines.svg || fail "the changed template is not used"
-expect 74 "$clast" plot small.db changed/map.svg -x strain --templates changed --keep-script
-says "changed/map.gp"
-cmp -s changed/map.gp "$source/analysis/pictures/templates/map.gp" || fail "a template was replaced"
-expect 66 "$clast" plot small.db lines.svg -x strain --templates none
-says "share/clast/templates"
 expect 66 env PATH=/nowhere "$clast" plot small.db m.png -x strain
 says "apt-get install gnuplot-nox"
 expect 0 env PATH=/nowhere "$clast" spectrum small.db --point 1 # rows need none
@@ -473,4 +464,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 165
+done_after 162
