@@ -350,4 +350,4 @@ assert 1 < value("runs needed") / (40 / n) / (1.96 * sd / 0.03) ** 2 < 1.1, (row
 assert value("runs needed, seeds.until") % 10 == 0 and value("runs needed, seeds.until") > value("runs needed"), rows
 PY
 ok "values that runs lack"
-done_after 134
+done_after 133

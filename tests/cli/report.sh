@@ -280,5 +280,5 @@ JS
   ok "the page in a browser"
   done_after 68
 else
-  done_after 44
+  done_after 43
 fi
