@@ -1,8 +1,9 @@
 /* Charts by gnuplot: a template, its words and numbers, and the data. The functions are for picture.c only.
  *
- * The templates are analysis/pictures/templates/NAME.gp. They are compiled in. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
- * separate folder, where gnuplot runs. The script holds text from users, such as the names of campaigns, only as quoted
- * strings that gnuplot does not interpret, and it names only files of that folder. */
+ * The templates are analysis/pictures/templates/NAME.gp. They are compiled in. A chart becomes a script (its variables,
+ * then frame.gp, then the template) and a file of numbers in a separate folder, where gnuplot runs. The script holds
+ * text from users, such as the names of campaigns, only as quoted strings that gnuplot does not interpret, and it names
+ * only files of that folder. */
 #pragma once
 
 #include <stdbool.h>
@@ -52,7 +53,8 @@ void chart_row(struct chart *chart, size_t count, const double *values);
 void chart_block_end(struct chart *chart);
 
 /* Draws and frees the chart. The file appears under its name only when it is complete. height: pixels for the width of
- * the page. STATUS_MISSING: no gnuplot on this machine. STATUS_USAGE: the file name's ending is not known. STATUS_IO. */
+ * the page. STATUS_MISSING: no gnuplot on this machine. STATUS_USAGE: the file name's ending is not known. STATUS_IO.
+ */
 status chart_draw(struct chart *chart, double height, struct error *error);
 
 /* The compiled-in templates (generated at build time); an entry with NULL ends the list. */

@@ -488,6 +488,7 @@ static status add_runs(struct ask_page *page, struct store *store, struct error 
 
 static status add_quantiles(struct ask_page *page, struct store *store, struct error *error) {
   double points = 0;
+  TRY(sql_execute(page->store.db, "CREATE TABLE quantile (point_id, quantity, share, value, low, high)", doing, error));
   TRY(answer_number(store, &points, error, "SELECT count(*) FROM point"));
   if (points > QUANTILES)
     return STATUS_OK;
@@ -528,12 +529,6 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
                   "CREATE TABLE question (name, doc, sql, parameters);"
                   "CREATE TABLE picture (run_id, point_id, quantile, png);"
                   "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
-                  "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
-                  "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, upper_share, "
-                  "upper_low, upper_high);"
-                  "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
-                  "CREATE TABLE doubt_word (engine, word, sentence, results, withheld);"
-                  "CREATE TABLE quantile (point_id, quantity, share, value, low, high);"
                   "BEGIN",
                   doing, error));
   for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
@@ -550,6 +545,13 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
           "message, host FROM attempt ORDER BY attempt_id DESC LIMIT %d",
           ATTEMPTS),
       "attempt", EXACT));
+  TRY(sql_execute(page->store.db,
+                  "CREATE TABLE means (point_id, results_version, quantity, n, mean, sd, hw95);"
+                  "CREATE TABLE modes (point_id, quantity, lower_mode, upper_mode, between_modes, upper_share, "
+                  "upper_low, upper_high);"
+                  "CREATE TABLE doubt_mark (engine, words, quantity, marks, withheld);"
+                  "CREATE TABLE doubt_word (engine, word, sentence, results, withheld)",
+                  doing, error));
   TRY(add_runs(page, store, error));
   TRY(add_quantiles(page, store, error));
   /* a question to the store may have the table's name */
