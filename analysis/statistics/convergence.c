@@ -84,12 +84,20 @@ double convergence_gain(double correlation, double w) {
   return 1 / (root * root);
 }
 
+static int order_of(double a, double b) {
+  return isnan(a) || isnan(b) ? isnan(a) - isnan(b) : (a > b) - (a < b);
+}
+
+int convergence_order(double error, double cost, double other_error, double other_cost) {
+  const int by_error = order_of(error, other_error);
+  return by_error ? by_error : order_of(cost, other_cost);
+}
+
 void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier) {
   for (size_t i = 0; i < n; i++) {
     on_frontier[i] = isfinite(cost[i]) && isfinite(error[i]);
     for (size_t j = 0; j < n && on_frontier[i]; j++)
-      if (cost[j] <= cost[i] && error[j] <= error[i] && (cost[j] < cost[i] || error[j] < error[i]))
-        on_frontier[i] = false;
+      on_frontier[i] = !(cost[j] <= cost[i] && convergence_order(error[j], cost[j], error[i], cost[i]) < 0);
   }
 }
 
@@ -203,8 +211,10 @@ static const struct field rows[] = {
     LEVEL_FLAG(open, .doc = "1: no limit is in sight, so that resolution may be larger; with 0: no run differs."),
     LEVEL(error, 0,
           .doc = "What all knobs of group resolution together leave unknown at this level: half_width of the view "
-                 "resolution when the study ended. Off where it is not known."),
-    LEVEL_FLAG(frontier, .doc = "1: no level studied is both cheaper and nearer (Pareto)."),
+                 "resolution after the last study. Off where it is not known."),
+    LEVEL_FLAG(frontier,
+               .doc = "1: no other level of the scene here has an error and a cpu that are both not larger, and one of "
+                      "them smaller (Pareto)."),
 };
 const struct field_table convergence_table = FIELD_TABLE(rows, struct convergence_row, "convergence",
                                                          "Levels of the knobs that a study has run.");

@@ -119,14 +119,18 @@ struct convergence_correlation convergence_correlate(size_t n, const double *coa
 double convergence_break_even(double cost_ratio);
 double convergence_gain(double correlation, double cost_ratio);
 
-/* Marks the Pareto frontier: a point is on it if no other one has a smaller (or equal) cost and a smaller error. NaN is
- * never on the frontier. */
+/* The order of settings: below 0 if the first is the better one, with less error, or as much for less cost. An error
+ * that is no bound (>=), or as large as a share can move, counts as its number. NaN is the largest. */
+int convergence_order(double error, double cost, double other_error, double other_cost);
+/* Marks the Pareto frontier: a point is on it if no better one has a smaller or equal cost. A point with NaN is never
+ * on it. */
 void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier);
 
 /* ---- rows of a study, as the store keeps them ---- */
 
 struct convergence_row { /* one level of one knob, for one quantity */
   char knob[FIELD_TEXT_SIZE], quantity[FIELD_TEXT_SIZE], setting[FIELD_TEXT_SIZE];
+  int64_t point; /* of the level in the store, for rows that were read from there */
   bool base, reference, paired;
   double step; /* NaN: the knob has none */
   int64_t n;

@@ -45,12 +45,6 @@ int64_t accuracy_seeds(double mean, double deviation, double margin, bool share)
   return seeds > FEWEST_SEEDS ? seeds : FEWEST_SEEDS;
 }
 
-enum { OWN_KNOBS = 32 };
-struct own_knob { /* at the scene's own settings */
-  char name[64];
-  double resolution, middle;
-};
-
 struct finding {
   const struct campaign *campaign;
   struct accuracy *accuracy;
@@ -58,10 +52,8 @@ struct finding {
   const struct scene *scene; /* the one that was studied */
   int64_t point;             /* its point in the store */
   int64_t last_point;        /* the last such point that the store has */
-  const struct field *row;   /* of the quantity; NULL: an exponent */
+  struct study_quantity quantity;
   char results[ASK_DOUBTS_RESULTS];
-  double beyond; /* sum over knobs without a limit: what a law of the least order leaves beyond the finest level, by the
-                    changes from coarser ones; NaN: not known */
   char own_out[128]; /* the scene's own level of the last knob, as "points = 400, ", if no run or law tells it; "" */
   char ran[64];      /* the knob of the last level with runs, and its levels so far */
   size_t levels;
@@ -72,9 +64,6 @@ struct finding {
   int unstudied;   /* knobs of resolution with levels, but without the scene's own one */
   double own_mean; /* with the scene's own settings: of the knob with most seeds there */
   int64_t own_n;
-  struct own_knob own_knob[OWN_KNOBS];
-  size_t own_knobs;
-  double own_error, own_resolution, own_middle; /* of all; the error may hold other studies, too */
 };
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
@@ -119,14 +108,21 @@ static double allowed(const struct campaign *campaign, double mean) {
   return campaign->accuracy_within * (campaign->accuracy_of_value ? fabs(mean) : 1);
 }
 
-/* Adds what the knob leaves beyond its finest level, `row`. One change may be small by chance: it counts only where it
+/* Notes what the knob leaves beyond its finest level, `row`. One change may be small by chance: it counts only where it
  * is a small part of what is allowed, and then the knob is none that lacks a limit. */
-static void add_beyond(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
-  const double left = left_beyond(finding, step_of(knob, row));
+static void note_beyond(const struct finding *finding, struct accuracy_knob *of, const struct convergence_row *row) {
+  const double left = left_beyond(finding, step_of(of->knob, row));
   const bool small = left < SMALL * allowed(finding->campaign, row->mean);
-  if (small && finding->accuracy->open == knob)
-    finding->accuracy->open = NULL;
-  finding->beyond += finding->levels > 1 || small ? left : (double)NAN;
+  of->open &= !small;
+  of->beyond += finding->levels > 1 || small ? left : (double)NAN;
+}
+
+/* Sum over the knobs. NaN: not known. */
+static double beyond_of(const struct finding *finding) {
+  double sum = finding->unstudied > 0 ? (double)NAN : 0;
+  for (size_t k = 0; k < finding->accuracy->knob_count; k++)
+    sum += finding->accuracy->knob[k].beyond;
+  return sum;
 }
 
 /* Is the setting a level that a study of the knob has without a word of the user? */
@@ -163,42 +159,29 @@ static void note_level(struct finding *finding, const struct knob *knob, const s
     text_append(unusual, sizeof accuracy->unusual, "%s%s", *unusual ? "," : "", row->knob);
 }
 
-/* The middle of the interval of what a knob leaves at a level. */
-static double middle_of(const struct convergence_row *row) {
-  return fmin(fabs(isnan(row->distance) ? row->bias : row->distance), row->resolution);
+/* The share of what a knob leaves at a level that more seeds leave: the middle of its interval. */
+static double settled_of(const struct convergence_row *row) {
+  const double middle = fabs(isnan(row->distance) ? row->bias : row->distance);
+  return middle < row->resolution ? middle / row->resolution : 1;
 }
 
-/* What the scene's own settings leave of each knob and of all, some of which other studies may have. */
-static void note_own(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
-  if (!row->base || !knob || knob->group == KNOB_SETTINGS || !(row->resolution >= 0) || finding->own_knobs == OWN_KNOBS)
-    return;
-  struct own_knob *own = &finding->own_knob[finding->own_knobs++];
-  *own = (struct own_knob){.resolution = row->resolution, .middle = middle_of(row)};
-  snprintf(own->name, sizeof own->name, "%.63s", row->knob);
-  finding->own_error = row->error;
-  finding->own_resolution += row->resolution;
-  finding->own_middle += own->middle;
+/* What is known of a knob of resolution; NULL: it is none, or one more than a study has. */
+static struct accuracy_knob *known_of(struct accuracy *accuracy, const struct knob *knob) {
+  size_t k = 0;
+  while (k < accuracy->knob_count && accuracy->knob[k].knob != knob)
+    k++;
+  if (!knob || knob->group != KNOB_RESOLUTION || k == LIMITS_STUDY_KNOBS)
+    return NULL;
+  if (k == accuracy->knob_count)
+    accuracy->knob[accuracy->knob_count++] = (struct accuracy_knob){.knob = knob, .settled = 1};
+  return &accuracy->knob[k];
 }
 
-static struct own_knob own_of(const struct finding *finding, const char *knob) {
-  for (size_t k = 0; k < finding->own_knobs; k++)
-    if (strcmp(finding->own_knob[k].name, knob) == 0)
-      return finding->own_knob[k];
-  return (struct own_knob){.resolution = NAN};
-}
-
-/* What more seeds of this study leave of a level's error: the middles of its knobs, and all of other studies. */
-static double left_of_level(const struct finding *finding, const struct convergence_row *row) {
-  return (row->resolution > 0 ? middle_of(row) : 0) + finding->own_middle - own_of(finding, row->knob).middle +
-         fmax(finding->own_error - finding->own_resolution, 0);
-}
-
-/* First pass: finds the knobs without a limit at the scene's own setting. */
+/* First pass: what is known of each knob at the scene's own setting. */
 static status take_open(struct finding *finding, const struct convergence_row *row, struct error *error) {
   (void)error;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   finding->studied = true;
-  note_own(finding, knob, row);
   char *knobs = finding->accuracy->knobs;
   if (knob && knob->group == KNOB_RESOLUTION && isfinite(row->resolution) && !condition_has(knobs, row->knob))
     text_append(knobs, sizeof finding->accuracy->knobs, "%s%s", *knobs ? ", " : "", row->knob);
@@ -206,25 +189,23 @@ static status take_open(struct finding *finding, const struct convergence_row *r
     finding->own_mean = row->mean;
     finding->own_n = row->n;
   }
-  const bool resolution = knob && knob->group == KNOB_RESOLUTION, ran = strcmp(finding->ran, row->knob) == 0;
+  const bool ran = strcmp(finding->ran, row->knob) == 0;
+  struct accuracy_knob *of = known_of(finding->accuracy, knob);
   const bool moves = row->resolution != 0; /* 0 where no run of the knob differs */
-  if (resolution && row->base && row->open && moves && !finding->accuracy->open)
-    finding->accuracy->open = knob;
-  if (knob && knob == finding->accuracy->open && row->reference && row->n > 0)
-    finding->accuracy->open_value = strtod(row->setting, NULL);
+  if (of && row->base) {
+    of->open |= row->open && moves;
+    of->settled = settled_of(row);
+  }
+  if (of && row->reference && row->n > 0)
+    of->value = strtod(row->setting, NULL);
   if (!ran)
     finding->levels = 0;
-  if (resolution && row->reference && row->step > 0 && row->resolution > finding->accuracy->widest_resolution) {
-    finding->accuracy->widest = knob;
-    finding->accuracy->widest_resolution = row->resolution;
-    finding->accuracy->widest_value = strtod(row->setting, NULL);
-  }
-  if (resolution && row->open && row->reference)
-    add_beyond(finding, knob, row);
+  if (of && row->open && row->reference)
+    note_beyond(finding, of, row);
   const bool finer = ran && finding->levels > 0 && step_of(knob, row) < finding->step[finding->levels - 1];
-  if (resolution && row->open && row->base && row->n == 0 && !finer) /* no law reaches the scene's own level */
-    finding->beyond = NAN;
-  if (resolution)
+  if (of && row->open && row->base && row->n == 0 && !finer) /* no law reaches the scene's own level */
+    of->beyond = NAN;
+  if (of)
     finding->unstudied += row->reference - (row->base && (row->n > 0 || isfinite(row->resolution)));
   if (row->n > 0 && knob)
     note_level(finding, knob, row);
@@ -236,12 +217,12 @@ static status take_open(struct finding *finding, const struct convergence_row *r
   const bool left_out = row->n == 0 && !row->base && isnan(row->resolution) && ran; /* finer than a level that ran */
   if (!ran)
     *finding->own_out = '\0';
-  if (resolution && ran && row->base && row->open && row->n == 0)
+  if (of && ran && row->base && row->open && row->n == 0)
     snprintf(finding->own_out, sizeof finding->own_out, "%.60s = %.60s, ", row->knob, row->setting);
-  if (resolution && left_out && !*finding->accuracy->left_out && *finding->own_out)
+  if (of && left_out && !*finding->accuracy->left_out && *finding->own_out)
     snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%s%.30s", finding->own_out,
              row->setting);
-  else if (resolution && left_out && !*finding->accuracy->left_out)
+  else if (of && left_out && !*finding->accuracy->left_out)
     snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
 }
@@ -249,15 +230,6 @@ static status take_open(struct finding *finding, const struct convergence_row *r
 /* The error, with what may lie beyond the finest levels. */
 static double resolution_of(const struct accuracy_option *option) {
   return option->error + (option->beyond > 0 ? option->beyond : 0);
-}
-
-/* The same against what is allowed, where an accuracy is given. An error as large as a share can move tells nothing: it
- * is smaller where the mean is nearer to 0.5, which is no merit of a setting. */
-static double need_of(const struct accuracy_option *option) {
-  const double error = resolution_of(option);
-  if (error >= (1 - 1e-9) * option->most)
-    return HUGE_VAL;
-  return isnan(option->within) ? error : option->within > 0 ? error / option->within : HUGE_VAL;
 }
 
 /* As many seeds as the time of a point allows, and no more than make the interval 1 % of the error. */
@@ -286,21 +258,20 @@ static status add_option(struct finding *finding, const struct convergence_row *
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
-  option->share = finding->row && field_is_share(finding->row);
+  option->share = finding->quantity.row && field_is_share(finding->quantity.row);
   const bool own = option->own && finding->own_n > 0; /* else as of other levels without runs */
   option->mean = own ? finding->own_mean : row->mean;
   option->n = own ? finding->own_n : row->n;
-  option->most = most_of(option->share, option->mean);
   option->within = allowed(finding->campaign, option->mean);
+  const double beyond = beyond_of(finding), most = most_of(option->share, option->mean) - option->error;
   if (option->open) /* the error is no larger than a share can move, as the store tells it */
-    option->beyond = isnan(finding->beyond) ? (double)NAN : fmin(finding->beyond, option->most - option->error);
-  const double whole = option->extrapolated ? row->error : option->error; /* row: the finest with runs */
-  const double left = left_of_level(finding, row);
-  option->middle = whole > 0 && left < whole ? left / whole : 1;
+    option->beyond = isnan(beyond) ? (double)NAN : fmin(beyond, most);
+  option->settled = settled_of(row);
   option->deviation = row->deviation;
-  option->seeds = isnan(accuracy->point_s) ? accuracy_seeds(option->mean, row->deviation,
-                                                            option->within - resolution_of(option), option->share)
-                                           : seeds_in(option, accuracy->point_s);
+  option->seeds = !isnan(accuracy->point_s) ? seeds_in(option, accuracy->point_s)
+                  : isnan(option->beyond)   ? 0
+                                            : accuracy_seeds(option->mean, row->deviation,
+                                                             option->within - resolution_of(option), option->share);
   option->total = total_of(option, option->seeds);
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
   accuracy->options[accuracy->count++] = *option;
@@ -355,28 +326,13 @@ static const struct condition *mark_of_level(const struct campaign *campaign, co
   return mark;
 }
 
-/* Marks of the result in runs of the studied scene with this setting; knob NULL: with its own settings. */
-static status read_doubts(const struct finding *finding, const struct knob *knob, const char *setting,
-                          struct ask_doubts *doubts, struct error *error) {
-  struct error ignored;
-  int64_t point = 0;
-  SCENE scene = scene_copy(finding->scene);
-  *doubts = (struct ask_doubts){0};
-  if (knob && ladder_turn(knob, scene, setting, &ignored) != STATUS_OK)
-    return STATUS_OK;
-  TRY(store_point_find(finding->store, scene, &point, error));
-  return point
-             ? ask_doubts(finding->store, &(struct ask_doubts_choice){.point = point}, finding->results, doubts, error)
-             : STATUS_OK;
-}
-
 /* Does a word mark half of the runs of a setting, and less than a quarter with the scene's own? More seeds do not help
  * there. Writes the marks of the setting. */
-static status is_marked(struct finding *finding, const struct knob *knob, const char *setting, bool *is,
-                        struct error *error) {
-  struct ask_doubts here, own;
-  TRY(read_doubts(finding, knob, setting, &here, error));
-  TRY(read_doubts(finding, NULL, NULL, &own, error));
+static status is_marked(struct finding *finding, int64_t point, bool *is, struct error *error) {
+  struct ask_doubts here = {0}, own = {0};
+  const struct ask_doubts_choice level = {.point = point}, scene = {.point = finding->point};
+  TRY(ask_doubts(finding->store, &level, finding->results, &here, error));
+  TRY(ask_doubts(finding->store, &scene, finding->results, &own, error));
   *is = false;
   if (here.runs == 0) /* of an extrapolated level: those of the finest stay */
     return STATUS_OK;
@@ -418,7 +374,7 @@ static status take_option(struct finding *finding, const struct convergence_row 
   bool marked = false;
   if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
-  TRY(is_marked(finding, knob, row->setting, &marked, error));
+  TRY(is_marked(finding, row->point, &marked, error));
   if (marked && !row->base)
     note_marked(finding, knob, row);
   if (there || (marked && !row->base))
@@ -428,6 +384,7 @@ static status take_option(struct finding *finding, const struct convergence_row 
                                    .extrapolated = extrapolated,
                                    .open = row->at_least,
                                    .error = row->error,
+                                   .point = row->point,
                                    .run_s = row->cpu};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
   if (!extrapolated)
@@ -438,52 +395,44 @@ static status take_option(struct finding *finding, const struct convergence_row 
   return option.run_s > 0 ? add_option(finding, finest, &option, error) : STATUS_OK;
 }
 
-static int by_total(const void *a, const void *b) {
+static int by_error(const void *a, const void *b) {
   const struct accuracy_option *x = a, *y = b;
-  const double error_x = need_of(x), error_y = need_of(y);
-  const double p = x->seeds && error_x < HUGE_VAL ? x->total : HUGE_VAL,
-               q = y->seeds && error_y < HUGE_VAL ? y->total : HUGE_VAL;
-  if (p == q && error_x == error_y)
-    return y->own - x->own;
-  return p == q ? (error_x > error_y) - (error_x < error_y) : (p > q) - (p < q);
+  return convergence_order(resolution_of(x), x->run_s, resolution_of(y), y->run_s);
 }
 
+/* With the interval over the seeds of a time. */
+static int by_total(const void *a, const void *b) {
+  const struct accuracy_option *x = a, *y = b;
+  const int order = convergence_order(x->total, x->cpu_s, y->total, y->cpu_s);
+  return order ? order : by_error(a, b);
+}
+
+/* The settings that reach the accuracy, by cost; then the others by error. */
 static int by_cost(const void *a, const void *b) {
   const struct accuracy_option *x = a, *y = b;
-  const bool reach_x = x->seeds > 0, reach_y = y->seeds > 0;
-  if (reach_x != reach_y)
-    return reach_x ? -1 : 1;
-  const double p = reach_x ? x->cpu_s : need_of(x), q = reach_x ? y->cpu_s : need_of(y);
-  return p == q ? y->own - x->own : (p > q) - (p < q);
+  const int order = convergence_order(x->cpu_s, 0, y->cpu_s, 0);
+  return order ? order : by_error(a, b);
 }
 
 static void choose(struct accuracy *accuracy) {
-  const bool in_time = !isnan(accuracy->point_s);
-  size_t open = accuracy->count; /* for a time the best option without a known bound is better than none */
-  qsort(accuracy->options, accuracy->count, sizeof *accuracy->options, in_time ? by_total : by_cost);
-  accuracy->chosen = accuracy->count;
-  for (size_t i = accuracy->count; i-- > 0;) {
-    const struct accuracy_option *option = &accuracy->options[i];
-    if (option->seeds > 0)
-      *(isnan(option->beyond) ? &open : &accuracy->chosen) = i;
-    const struct accuracy_option *least = &accuracy->options[accuracy->reference];
-    const double need = need_of(option), most = need_of(least);
-    if (need < most || (need == most && (need < HUGE_VAL || option->own)))
+  qsort(accuracy->options, accuracy->count, sizeof *accuracy->options, isnan(accuracy->point_s) ? by_cost : by_total);
+  accuracy->chosen = accuracy->options[0].seeds > 0 ? 0 : accuracy->count;
+  for (size_t i = 1; i < accuracy->count; i++)
+    if (by_error(&accuracy->options[i], &accuracy->options[accuracy->reference]) < 0)
       accuracy->reference = i;
-  }
-  if (in_time && accuracy->chosen == accuracy->count)
-    accuracy->chosen = open;
 }
 
 double accuracy_least(const struct accuracy *accuracy, double point_s, bool *open) {
-  double least[2] = {NAN, NAN}; /* of options with a limit, without one */
+  double least = NAN;
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
-    const bool is_open = isnan(option->beyond);
-    least[is_open] = fmin(least[is_open], total_of(option, seeds_in(option, point_s)));
+    const double total = total_of(option, seeds_in(option, point_s));
+    if (convergence_order(total, 0, least, 0) >= 0)
+      continue;
+    least = total;
+    *open = isnan(option->beyond);
   }
-  *open = isnan(least[0]);
-  return least[*open];
+  return least;
 }
 
 /* The share of each point in the campaign's time. NaN: the campaign gives an accuracy, not a time. */
@@ -498,30 +447,47 @@ static status divide_time(const struct campaign *campaign, struct accuracy *accu
 static status read_study(struct finding *finding, struct store *store, const struct scene *scene, struct error *error) {
   static status (*const passes[])(struct finding *, const struct convergence_row *, struct error *) = {take_open,
                                                                                                        take_option};
-  struct study_quantity quantity;
   int64_t point = 0;
-  if (study_quantity_find(scene->kind, finding->campaign->accuracy_quantity, &quantity, error) != STATUS_OK)
+  if (study_quantity_find(scene->kind, finding->campaign->accuracy_quantity, &finding->quantity, error) != STATUS_OK)
     return STATUS_CONTENT;
   finding->store = store;
   finding->scene = scene;
-  finding->beyond = 0;
   finding->unstudied = 0;
-  finding->own_knobs = 0;
-  finding->own_error = finding->own_resolution = finding->own_middle = 0;
-  TRY(ask_doubts_results(store, quantity.column, finding->results, error));
+  finding->accuracy->knob_count = 0;
+  TRY(ask_doubts_results(store, finding->quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
-  finding->row = quantity.row;
   finding->point = point;
   finding->last_point = point ? point : finding->last_point;
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
-    ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
+    ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, finding->quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
       TRY(passes[pass](finding, &row, error));
     TRY(answer_end(&levels));
-    if (finding->unstudied > 0)
-      finding->beyond = NAN;
   }
   return STATUS_OK;
+}
+
+/* What each knob leaves of the error of the setting with the smallest one. */
+static status read_parts(const struct finding *finding, struct error *error) {
+  struct accuracy *accuracy = finding->accuracy;
+  const struct accuracy_option *least = &accuracy->options[accuracy->reference];
+  ANSWER parts = ask_parts(finding->store, least->point, finding->campaign->scene->kind->results_version,
+                           finding->quantity.column, error);
+  for (struct ask_part part; ask_parts_next(&parts, &part);) {
+    struct accuracy_knob *of = known_of(accuracy, knob_of(finding->campaign, part.knob));
+    const bool turned = strcmp(part.knob, least->knob) == 0;
+    accuracy->middle += part.error * (turned ? least->settled : of ? of->settled : 1);
+    if (of)
+      of->part = part.error + (least->open && of->beyond > 0 ? of->beyond : 0);
+  }
+  for (size_t k = 0; k < accuracy->knob_count; k++) {
+    const struct accuracy_knob *of = &accuracy->knob[k];
+    if (of->open && (!accuracy->open || of->part > accuracy->open->part))
+      accuracy->open = of;
+    if (of->part > 0 && !of->knob->choices[0] && (!accuracy->widest || of->part > accuracy->widest->part))
+      accuracy->widest = of;
+  }
+  return answer_end(&parts);
 }
 
 /* Reads the study of the first point that has one, if that of the campaign's scene is missing, and names its point. */
@@ -648,6 +614,7 @@ status accuracy_find(const struct campaign *campaign, const char *path, const ch
   if (accuracy->count == 0)
     return no_result(&finding, path, store_path, error);
   choose(accuracy);
+  TRY(read_parts(&finding, error));
   return name_widest(&finding, store, error);
 }
 
@@ -668,19 +635,6 @@ static status too_short(const struct accuracy *accuracy, const struct campaign *
                      "accuracy: %s of processor time is too short: the cheapest studied settings and %d seeds for each "
                      "of the %.0f points need %s. Allow more time, or take fewer points",
                      given, FEWEST_SEEDS, campaign->accuracy_time / accuracy->point_s, needed);
-}
-
-/* The finest studied level of the knob without a limit; NULL: there is none. */
-static const struct accuracy_option *finest_open(const struct accuracy *accuracy) {
-  const struct accuracy_option *finest = NULL;
-  for (size_t i = 0; accuracy->open && i < accuracy->count; i++) {
-    const struct accuracy_option *option = &accuracy->options[i];
-    const double finer = finest ? strtod(option->setting, NULL) / strtod(finest->setting, NULL) : 1;
-    if (strcmp(option->knob, accuracy->open->name) == 0 && !option->own &&
-        (!finest || (finer_by(accuracy->open) > 1 ? finer > 1 : finer < 1)))
-      finest = option;
-  }
-  return finest;
 }
 
 /* Appends the words of a command without the --set of the input that `remedy` (PATH=VALUE) sets anew. */
@@ -704,6 +658,7 @@ static void append_study(const struct accuracy *accuracy, const struct campaign 
   const double finer = finer_by(knob);
   char own[64];
   ladder_setting(knob, campaign->scene, own, sizeof own);
+  value = value > 0 ? value : strtod(own, NULL); /* 0: another study has the levels */
   const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
   char finest[64], remedy[160], set[sizeof remedy + 8] = "";
   snprintf(finest, sizeof finest, "%.6g", value * finer);
@@ -730,16 +685,16 @@ static void append_study(const struct accuracy *accuracy, const struct campaign 
   text_append(next, size, "`");
 }
 
-/* More levels: with which, and what a run of the finest one takes. */
+/* Finer levels of the knob without a limit: which, and what a run of the finest one takes. */
 static void advise_levels(const struct accuracy *accuracy, const struct campaign *campaign,
-                          const struct accuracy_option *finest, char *next, size_t size) {
-  const struct knob *knob = accuracy->open;
-  const double finer = finer_by(knob);
-  const double value = accuracy->open_value > 0 ? accuracy->open_value : strtod(finest->setting, NULL);
+                          const struct accuracy_option *best, char *next, size_t size) {
+  const struct knob *knob = accuracy->open->knob;
+  const double value = accuracy->open->value, finer = finer_by(knob);
   const char *unit = unit_of(campaign, knob);
   char setting[64], time[32];
   snprintf(setting, sizeof setting, "%.6g", value * finer);
-  const double run_s = finest->run_s * work_at(campaign, knob, setting) / work_at(campaign, knob, finest->setting);
+  const double run_s = best->run_s * work_at(campaign, knob, setting) /
+                       work_at(campaign, knob_of(campaign, best->knob), best->setting);
   progress_duration(run_s, time, sizeof time);
   text_append(
       next, size,
@@ -747,23 +702,24 @@ static void advise_levels(const struct accuracy *accuracy, const struct campaign
       "do not help. Finer levels may show a limit%s%s%s",
       knob->name, value, *unit ? " " : "", unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
       run_s > 0 ? ")" : "");
-  append_study(accuracy, campaign, knob, value, finest->n, next, size);
+  append_study(accuracy, campaign, knob, value, best->n, next, size);
 }
 
 /* Finer levels of the knob that leaves most of the error. */
 static void advise_widest(const struct accuracy *accuracy, const struct campaign *campaign, int64_t seeds, char *next,
                           size_t size) {
   char text[CAMPAIGN_UNIT];
-  text_append(next, size, "Finer levels of %s, which leaves most of it (%.2g%s), may narrow it", accuracy->widest->name,
-              accuracy->widest_resolution, campaign_unit(campaign, campaign->accuracy_quantity, text));
-  append_study(accuracy, campaign, accuracy->widest, accuracy->widest_value, seeds, next, size);
+  const struct accuracy_knob *widest = accuracy->widest;
+  text_append(next, size, "Finer levels of %s, which leaves most of it (%.2g%s), may narrow it", widest->knob->name,
+              widest->part, campaign_unit(campaign, campaign->accuracy_quantity, text));
+  append_study(accuracy, campaign, widest->knob, widest->value, seeds, next, size);
 }
 
 /* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
  * leave its middle, and the errors of other studies. */
 static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
                          const struct accuracy_option *best, char *next, size_t size) {
-  const double error = resolution_of(best), middle = best->middle * error;
+  const double error = resolution_of(best), middle = fmin(accuracy->middle, error);
   const double factor = error > 0 ? (error - middle) / (best->within - middle) : 2; /* 0: no run differs yet */
   const double seeds = ceil((double)best->n * factor * factor);
   char text[CAMPAIGN_UNIT];
@@ -845,7 +801,7 @@ static bool is_reached(const struct accuracy *accuracy, const struct campaign *c
 
 /* No level reaches the accuracy: what would. */
 static status out_of_reach(const struct accuracy *accuracy, const struct campaign *campaign, struct error *error) {
-  const struct accuracy_option *best = &accuracy->options[accuracy->reference], *finest = finest_open(accuracy);
+  const struct accuracy_option *best = &accuracy->options[accuracy->reference];
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
   char next[1600] = "", width[64], share[64] = "", more[256] = "", chosen[256], smallest[1200], text[CAMPAIGN_UNIT];
@@ -855,24 +811,26 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
     snprintf(share, sizeof share, best->mean == 0 ? " (no share of a mean of 0 allows an error)" : " (%s)",
              text_percent(least / fabs(best->mean), (char[TEXT_PERCENT]){0}));
   const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
-  const bool by_resolution = !accuracy->open && best->middle * least >= best->within;
-  const bool of_another = finest && strncmp(accuracy->left_out, finest->knob, strlen(finest->knob)) != 0;
+  const bool by_resolution = !accuracy->open && accuracy->middle >= best->within;
+  const char *open = accuracy->open ? accuracy->open->knob->name : "";
+  const bool of_another = strncmp(accuracy->left_out, open, strlen(open)) != 0;
   const bool is_wide = accuracy->widest && accuracy->widest != accuracy->open &&
-                       accuracy->widest_resolution >= best->within; /* finer levels of another knob are not enough */
+                       accuracy->widest->part >= best->within; /* finer levels of another knob are not enough */
   if (is_wide && accuracy->open)
     advise_widest(accuracy, campaign, best->n, next, sizeof next);
   else if (*accuracy->left_out && !by_resolution && !of_another)
     text_append(next, sizeof next,
                 "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
                 accuracy->left_out, path, quantity);
-  else if (finest)
-    advise_levels(accuracy, campaign, finest, next, sizeof next);
+  else if (accuracy->open)
+    advise_levels(accuracy, campaign, best, next, sizeof next);
   else
     advise_seeds(accuracy, campaign, best, next, sizeof next);
   char wider[32];
   const double percent = campaign->accuracy_of_value ? 100 : 1,
                mean = campaign->accuracy_of_value ? fabs(best->mean) : 1;
-  for (double more_than = 1.3; more_than * least < fmin(fabs(best->mean), best->most) && !*more && least > 0;
+  for (double more_than = 1.3;
+       more_than * least < fmin(fabs(best->mean), most_of(best->share, best->mean)) && !*more && least > 0;
        more_than *= 2) {
     snprintf(wider, sizeof wider, "%.2g", more_than * least * percent / mean);
     if (more_than * least > best->within && is_reached(accuracy, campaign, strtod(wider, NULL) / percent))
@@ -995,11 +953,11 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     words_print(out, before,
                 "no limit is seen in %s: total adds what a law of order %g would leave beyond the finest level, which "
                 "is a guess and no bound",
-                accuracy->open ? accuracy->open->name : "a setting", LIMIT_ORDER_LEAST);
+                accuracy->open ? accuracy->open->knob->name : "a setting", LIMIT_ORDER_LEAST);
   if (*option->marks)
     words_print(out, before, "the results of this choice are in doubt (!), %s (`clast explain` and the word)",
                 option->marks);
-  if (option->total >= option->most)
+  if (option->total >= most_of(option->share, option->mean))
     words_print(out, before,
                 "Such an error says nothing of a share with the mean %.2g: no setting of the study is "
                 "near enough",

@@ -16,14 +16,13 @@ struct accuracy_option {
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
   bool open;         /* the error is no bound */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
-  double
-      middle; /* share of the error that more seeds leave: middles of the knobs' intervals, and all of other studies */
+  double settled;    /* share of what the knob leaves there that more seeds leave: the middle of its interval */
+  int64_t point;     /* in the store */
   double beyond;    /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
-                       the option is chosen for a time only, if no other can be run. Else 0 */
+                       the option is chosen for a time only. Else 0 */
   double mean;      /* of an extrapolated one that of the finest level with runs */
   int64_t n;        /* seeds of this mean */
   double within;    /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
-  double most;      /* no error of a share is larger than its distance from the farther end; else infinite */
   bool share;       /* of a share, whose intervals in tables are wider than Student's */
   double deviation; /* standard deviation between seeds */
   int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
@@ -36,15 +35,27 @@ struct accuracy_option {
                                  study: cut"; "": none */
 };
 
+/* What is known of a knob of resolution. */
+struct accuracy_knob {
+  const struct knob *knob;
+  bool open;      /* no limit is seen at the scene's own setting */
+  double settled; /* share of what it leaves there that more seeds leave */
+  double beyond;  /* what the slowest law leaves beyond the finest level; NaN: not known */
+  double value;   /* the finest level with runs; 0: none */
+  double part;    /* of the error of the option `reference`, with what is beyond */
+};
+
 struct accuracy {
   struct accuracy_option *options; /* owned; by cpu_s, for a time by total; then those that do not reach it, by error */
   size_t count;
   double point_s; /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
-  size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does */
-  const struct knob *open;   /* of resolution, without a limit; NULL: none */
-  const struct knob *widest; /* of resolution, the one that leaves most unknown at its finest level; NULL: none */
-  double widest_resolution, widest_value; /* what it leaves there, and this level */
-  double open_value;                      /* the finest level of `open` with runs; 0: none */
+  size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does. All
+                     are in the order of convergence_order() */
+  struct accuracy_knob knob[LIMITS_STUDY_KNOBS];
+  size_t knob_count;
+  const struct accuracy_knob *open;   /* without a limit, of these the one with the largest part; NULL: none */
+  const struct accuracy_knob *widest; /* that has finer levels, with the largest part; NULL: none */
+  double middle;                      /* of the error of the option `reference`: what more seeds leave */
   char marked[512];   /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
   char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
   char knobs[128];    /* what the errors hold: "grains, time_step" */
@@ -54,7 +65,7 @@ struct accuracy {
   char
       widest_point[500]; /* a sentence on another studied point at which the chosen setting is farthest off; "": none */
   const char *path;      /* the campaign's file with --set and --store of the command (option_words()); borrowed */
-  size_t reference;      /* the option with the smallest error (for a share: of its mean); costs are relative to it */
+  size_t reference;      /* the option with the smallest error; costs are relative to it */
 };
 
 /* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its

@@ -180,13 +180,7 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   }
 }
 
-/* An error as large as a share can move tells nothing, so that no such level is near. */
-static double near_by(const struct convergence_row *row, const struct sample_range *range) {
-  const double most = fmax(row->mean - range->least, range->most - row->mean);
-  return row->error >= (1 - 1e-9) * most ? (double)NAN : row->error;
-}
-
-static void mark_frontier(const struct sample_range *range, size_t count, struct study_found *found) {
+static void mark_frontier(size_t count, struct study_found *found) {
   enum { MOST = LIMITS_STUDY_KNOBS * KNOB_LEVELS };
   double cost[MOST] = {0}, error[MOST] = {0};
   bool on[MOST];
@@ -194,7 +188,7 @@ static void mark_frontier(const struct sample_range *range, size_t count, struct
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++, n++) {
       cost[n] = found[i].rows[l].cpu;
-      error[n] = near_by(&found[i].rows[l], range);
+      error[n] = found[i].rows[l].error;
     }
   convergence_frontier(n, cost, error, on);
   n = 0;
@@ -239,8 +233,7 @@ status study_errors(const struct study *study, size_t from, size_t quantity, str
         row->error = stored.error;
         row->at_least = stored.at_least;
       }
-  const struct sample_range range = sample_range(study->quantity[quantity].row);
-  mark_frontier(&range, count, found);
+  mark_frontier(count, found);
   return answer_end(&levels);
 }
 
@@ -329,11 +322,9 @@ status study_store(const struct study *study, struct store *store, struct error 
   for (size_t from = 0, count = 0; from < study->ladder_count; from += count)
     for (size_t q = 0; q < study->quantity_count; q++) {
       count = study_of_scene(study, from, q, found);
-      TRY(store_rows(study, from, count, found, store, error)); /* from these the store tells the errors */
-      TRY(study_errors(study, from, q, store, count, found, error));
       TRY(store_rows(study, from, count, found, store, error));
     }
-  return STATUS_OK;
+  return store_rank_convergence(store, error); /* the store tells the errors */
 }
 
 /* ---- values from the store ---- */

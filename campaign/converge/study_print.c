@@ -44,7 +44,9 @@ static const struct {
      "distance to the limit by the law of all seeds, which is not this mean minus the limit (none seen: |bias| "
      "+ half width, which is no bound: >=). No difference seen: runs of equal seed are equal at all levels, which adds "
      "nothing; how many other runs may differ is part of the interval over seeds."},
-    {"frontier", "best: no level is both cheaper and nearer."},
+    {"frontier",
+     "best: no other level of the table has as small an error for less time, or a smaller one for as little; "
+     ">= counts as its number."},
 };
 enum { LEGEND = sizeof legend / sizeof legend[0] };
 
@@ -243,16 +245,16 @@ static bool seeds_are_equal(size_t count, const struct study_found *found) {
 }
 
 /* "M_1/M = 0.218 +- 0.026 (seeds, 95 %). Error of the resolution: >= 0.09 (grains >= 0.05, time_step 0.04)." */
-static void print_sentence(const struct study *study, size_t from, size_t quantity, size_t count,
-                           const struct study_found *found, FILE *out) {
+static status print_sentence(const struct printing *printing, size_t from, size_t quantity, size_t count,
+                             const struct study_found *found, FILE *out, struct error *error) {
+  const struct study *study = printing->study;
   size_t knob = 0, level = 0;
   if (!find_told(count, found, &knob, &level))
-    return;
+    return STATUS_OK;
   const struct study_ladder *ladder = &study->ladder[from + knob];
   const struct convergence_row *told = &found[knob].rows[level];
   char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT], setting[STUDY_SETTING];
   charts_label(study->quantity[quantity].name, label);
-  const struct sample_range range = sample_range(study->quantity[quantity].row);
   const struct sample_summary mean = summary_of(study, ladder, level, quantity);
   uncertainty_seeds(&mean, text);
   if (!told->base)
@@ -260,27 +262,17 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   fprintf(out, "%s = %s.", label, text);
   if (isfinite(told->error))
     fprintf(out, " Error of the resolution: %s", study_show_error(told->error, told->at_least, text));
-  double rest = told->error;
-  const double farther = fmax(told->mean - range.least, range.most - told->mean); /* end of what it can be */
+  double sum = 0;
   const char *before = " (";
-  for (size_t i = 0; i < count; i++) {
-    const struct convergence_row *row = i == knob ? told : NULL;
-    for (size_t l = 0; l < found[i].count && told->base; l++)
-      if (found[i].rows[l].base)
-        row = &found[i].rows[l];
-    if (!row || !(row->resolution > 0))
-      continue;
-    fprintf(out, "%s%s %s", before, row->knob, study_show_error(row->resolution, row->open, text));
-    before = ", ";
-    rest -= row->resolution;
+  ANSWER parts = ask_parts(printing->store, ladder->point[level], ladder->base->kind->results_version,
+                           study->quantity[quantity].column, error);
+  for (struct ask_part part; ask_parts_next(&parts, &part); before = ", ") {
+    fprintf(out, "%s%s %s", before, part.knob, study_show_error(part.error, part.open, text));
+    sum += part.error;
   }
-  if (rest < -1e-9 * told->error)
-    fprintf(out, fabs(told->error - farther) <= 1e-9 * farther ? "; a share cannot move farther"
-                                                               : "; a larger study in the store tells less");
-  else if (rest > 1e-9 * told->error) {
-    fprintf(out, "%sother or larger studies %s", before, study_show_error(rest, false, text));
-    before = ", ";
-  }
+  TRY(answer_end(&parts));
+  if (sum > (1 + 1e-9) * told->error)
+    fputs("; a share cannot move farther", out);
   fprintf(out, "%s%s", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");
   before = " No difference seen (seeds): ";
   for (size_t i = 0; i < count; i++)
@@ -301,6 +293,7 @@ static void print_sentence(const struct study *study, size_t from, size_t quanti
   if (told->error > 0 && told->error >= fabs(told->mean))
     fputs(" Such an error is as large as the value: finer levels are needed, or more seeds.", out);
   fputc('\n', out);
+  return STATUS_OK;
 }
 
 /* The limit with the scatter of the seeds in its interval. The distance of the scene's own level is known far better:
@@ -464,8 +457,9 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
     putchar('\n');
   OWNED char *sentences = NULL;
   FILE *out = text_open(&sentences);
-  print_sentence(study, from, quantity, count, found, out);
+  status code = print_sentence(printing, from, quantity, count, found, out, error);
   text_close_small(out, &sentences);
+  TRY(code);
   text_wrap_lines(sentences, WIDTH, stdout);
   char point[512];
   design_axis_show_point(study->varied_count, study->varied, base->inputs, point, sizeof point);
@@ -484,7 +478,6 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   free(sentences);
   sentences = NULL;
   out = text_open(&sentences);
-  status code = STATUS_OK;
   for (size_t i = 0; i < count && code == STATUS_OK; i++)
     code = print_limit(printing, &study->ladder[from + i], quantity, &found[i], out, error);
   text_close_small(out, &sentences);

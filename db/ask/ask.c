@@ -560,11 +560,12 @@ struct answer ask_convergence_levels(struct store *store, int64_t base_point, in
     sqlite3_str_appendf(columns, "%sc.\"%w\"", i ? ", " : "", name);
   }
   char *list = sqlite3_str_finish(columns); /* NULL, no memory, is an empty list: the question then fails */
-  return answer_to(store, error,
-                   "SELECT %z, r.half_width, r.verdict FROM convergence c LEFT JOIN resolution r USING (point_id, "
-                   "results_version, quantity) WHERE c.base_point_id = %lld AND c.results_version = %d AND "
-                   "c.quantity = %Q ORDER BY c.knob, c.level",
-                   list, (long long)base_point, results_version, quantity);
+  return answer_to(
+      store, error,
+      "SELECT %z, r.half_width, r.verdict, point_id FROM convergence c LEFT JOIN resolution r USING (point_id, "
+      "results_version, quantity) WHERE c.base_point_id = %lld AND c.results_version = %d AND "
+      "c.quantity = %Q ORDER BY c.knob, c.level",
+      list, (long long)base_point, results_version, quantity);
 }
 
 bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
@@ -581,6 +582,27 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
   }
   row->error = answer_real(answer, convergence_table.count);
   row->at_least = ask_resolution_verdict(answer_text(answer, convergence_table.count + 1)) > ASK_RESOLUTION_KNOWN;
+  row->point = answer_integer(answer, convergence_table.count + 2);
+  return true;
+}
+
+struct answer ask_parts(struct store *store, int64_t point, int results_version, const char *quantity,
+                        struct error *error) {
+  OWNED char *parts = NULL;
+  FILE *out = text_open(&parts);
+  views_resolution_parts(out);
+  text_close_small(out, &parts);
+  return answer_to(
+      store, error,
+      "%s SELECT knob, error, open FROM part WHERE point_id = %lld AND results_version = %d AND quantity = "
+      "%Q AND error > 0 ORDER BY error DESC, knob",
+      parts, (long long)point, results_version, quantity);
+}
+
+bool ask_parts_next(struct answer *answer, struct ask_part *part) {
+  if (!answer_next(answer))
+    return false;
+  *part = (struct ask_part){answer_text(answer, 0), answer_real(answer, 1), answer_integer(answer, 2) > 0};
   return true;
 }
 

@@ -245,6 +245,18 @@ struct answer ask_convergence_levels(struct store *store, int64_t base_point, in
 /* The next level. False at the end and after an error; then answer_end(). */
 bool ask_convergence_next(struct answer *answer, struct convergence_row *row);
 
+/* What one knob leaves of the error of a point. The parts of a point add up to its error, unless a share cannot move so
+ * far. */
+struct ask_part {
+  const char *knob; /* until the next one */
+  double error;
+  bool open; /* no bound */
+};
+/* The parts of a point, largest first. */
+struct answer ask_parts(struct store *store, int64_t point, int results_version, const char *quantity,
+                        struct error *error);
+bool ask_parts_next(struct answer *answer, struct ask_part *part);
+
 /* ---- Lists of points: which of them have runs, their inputs and the statistics of their runs. point_read() reads the
  * fragments of one point. ---- */
 

@@ -166,3 +166,16 @@ status store_set_convergence(struct store *store, const struct store_convergence
   TRY(store_begin(store, error));
   return store_end(store, replace_study(store, study, error), (int)study->count + 1, error);
 }
+
+status store_rank_convergence(struct store *store, struct error *error) {
+  TRY(store_begin(store, error));
+  static const char rank[] =
+      "UPDATE convergence AS c SET error = r.half_width FROM convergence l LEFT JOIN resolution r\n"
+      "  USING (point_id, results_version, quantity) WHERE (l.base_point_id, l.results_version, l.knob, l.quantity,\n"
+      "    l.level) = (c.base_point_id, c.results_version, c.knob, c.quantity, c.level);\n"
+      "UPDATE convergence AS c SET frontier = cpu + error IS NOT NULL AND NOT EXISTS (SELECT 1 FROM convergence o\n"
+      "  WHERE (o.base_point_id, o.results_version, o.quantity) = (c.base_point_id, c.results_version, c.quantity)\n"
+      "    AND o.error <= c.error AND o.cpu <= c.cpu AND (o.error < c.error OR o.cpu < c.cpu))";
+  const status code = sql_execute(store->db, rank, writing_study, error);
+  return store_end(store, code, 1, error);
+}

@@ -132,6 +132,9 @@ struct store_convergence {
 };
 /* Replaces the stored study of this scene, knob and quantity. Joins the open batch. */
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
+/* After studies: `error` of all levels is that of the view resolution, `frontier` that of convergence_frontier() over
+ * all levels of a scene and quantity. */
+status store_rank_convergence(struct store *store, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 /* Begins a batch, and waits for another program at most so long. False: it holds the store. Other faults are left to

@@ -346,20 +346,28 @@ static void write_shares(const struct field_table *table, const char *before, FI
   }
 }
 
-/* The one place that knows the error of a setting; every screen asks this view. For every point and quantity with a
- * study: the sum over the knobs of the error that each knob leaves, taken at the point or, when the point is no level
- * of the knob, at the scene's own setting. Where that setting has no error, the largest one of the knob's levels counts
- * and is no bound. Named settings: the error of their reference, which takes the knobs at its own values, and how far
- * they are from it. Among several studies, the one with the largest error counts. No error of a share is larger than
- * its distance from the farther end of 0 to 1; a level without runs counts with the mean of the finest one. */
-static void write_resolution(struct view *view) {
-  fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n"
-        "WITH share (quantity) AS (VALUES ",
-        view->out);
-  write_shares(&outcome_table, "", view->out);
+/* The one place that knows the error of a setting; every screen asks it. For every point and quantity with a study: the
+ * sum over the knobs of the error that each knob leaves, taken at the point or, when the point is no level of the knob,
+ * at the scene's own setting. Where that setting has no error, the largest one of the knob's levels counts and is no
+ * bound. Named settings: the error of their reference, which takes the knobs at its own values, and how far they are
+ * from it. No error of a share is larger than its distance from the farther end of 0 to 1; a level without runs counts
+ * with the mean of the finest one. */
+void views_resolution_parts(FILE *out) {
+  fputs("WITH share (quantity) AS (VALUES ", out);
+  write_shares(&outcome_table, "", out);
   for (size_t i = 0; i < engine_count(); i++)
-    write_shares(engine_at(i)->results, ", ", view->out);
-  fprintf(view->out, "),\n%s\n", views_resolution_sql);
+    write_shares(engine_at(i)->results, ", ", out);
+  fprintf(out, "),\n%s\n", views_resolution_sql);
+}
+
+static void write_resolution(struct view *view) {
+  fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n", view->out);
+  views_resolution_parts(view->out);
+  fputs("SELECT point_id, results_version, quantity, min(error, most) AS half_width,\n"
+        "  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN NOT open THEN 'known'\n"
+        "    WHEN error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict\n"
+        "FROM whole WHERE error > 0 OR open < 2; -- with a knob that never ran, at least 0 tells nothing\n",
+        view->out);
 }
 
 static void write_points(struct view *view) {

@@ -37,34 +37,36 @@ of_study AS (SELECT a.*, k.knob, coalesce(l.resolution, k.at_base, k.largest) AS
       (SELECT 1 FROM point_input i JOIN point_input b ON b.point_id = a.base_point_id AND b.path = i.path
         JOIN point_input n ON n.point_id = a.point_id AND n.path = i.path
         WHERE i.point_id = l.point_id AND i.value <> b.value AND i.value <> n.value))),
-of_named AS (SELECT base_point_id, point_id, results_version, quantity, sum(error) AS error, max(diverges) AS diverges,
-    max(open) AS open FROM of_study WHERE named GROUP BY base_point_id, point_id, results_version, quantity),
 -- Of several studies of a knob, one that has the setting replaces those whose finest level is coarser, or as fine with
 -- fewer seeds. Of the others the largest error counts.
 placed AS (SELECT *, rank() OVER (PARTITION BY point_id, results_version, quantity, knob
     ORDER BY finest, seeds DESC) AS place
   FROM (SELECT point_id, results_version, quantity, knob, error, diverges, open, has, finest, seeds FROM of_study
-      WHERE NOT named
     UNION ALL SELECT point_id, results_version, quantity, knob, error, diverges, open, has, finest, seeds FROM of_kin)),
-of_point AS (SELECT point_id, results_version, quantity, sum(error) AS error, max(diverges) AS diverges,
-    max(open) AS open
-  FROM (SELECT point_id, results_version, quantity, knob, max(error) AS error, max(diverges) AS diverges,
-      max(open) AS open
-    FROM (SELECT *, min(iif(has, place, NULL)) OVER (PARTITION BY point_id, results_version, quantity, knob) AS best
-      FROM placed)
-    WHERE place <= coalesce(best, place) GROUP BY point_id, results_version, quantity, knob)
-  GROUP BY point_id, results_version, quantity
-  UNION ALL SELECT s.point_id, s.results_version, s.quantity, abs(s.bias) + s.bias_half_width + r.error, r.diverges,
-    r.open FROM convergence s JOIN of_named r USING (base_point_id, results_version, quantity)
-  WHERE s.knob = 'settings' AND NOT s.base),
-largest AS (SELECT point_id, results_version, quantity, max(error) AS error, max(diverges) AS diverges,
+left_by AS MATERIALIZED (SELECT point_id, results_version, quantity, knob, max(error) AS error,
+    max(diverges) AS diverges, max(open) AS open
+  FROM (SELECT *, min(iif(has, place, NULL)) OVER (PARTITION BY point_id, results_version, quantity, knob) AS best
+    FROM placed)
+  WHERE place <= coalesce(best, place) GROUP BY point_id, results_version, quantity, knob),
+-- Other named settings, unless they are a level of a knob: the parts of their reference, and how far they are from it.
+named AS MATERIALIZED (SELECT s.point_id, s.results_version, s.quantity, r.point_id AS reference,
+    max(abs(s.bias) + s.bias_half_width) AS error
+  FROM convergence s JOIN convergence r USING (base_point_id, results_version, quantity, knob)
+  WHERE s.knob = 'settings' AND r.reference AND NOT s.base AND NOT s.reference AND s.bias_half_width IS NOT NULL
+    AND (r.point_id, r.results_version, r.quantity) IN (SELECT point_id, results_version, quantity FROM left_by
+      WHERE error IS NOT NULL)
+    AND (s.point_id, s.results_version, s.quantity) NOT IN (SELECT point_id, results_version, quantity FROM level)
+  GROUP BY s.point_id, s.results_version, s.quantity),
+part AS (SELECT * FROM left_by
+    WHERE (point_id, results_version, quantity) NOT IN (SELECT point_id, results_version, quantity FROM named)
+  UNION ALL SELECT n.point_id, n.results_version, n.quantity, l.knob, l.error, l.diverges, l.open
+  FROM named n JOIN left_by l ON l.point_id = n.reference AND l.results_version = n.results_version
+    AND l.quantity = n.quantity
+  UNION ALL SELECT point_id, results_version, quantity, 'settings', error, 0, 0 FROM named),
+whole AS (SELECT point_id, results_version, quantity, sum(error) AS error, max(diverges) AS diverges,
     max(open) AS open, iif(quantity IN (SELECT quantity FROM share), coalesce((SELECT max(r.mean, 1 - r.mean)
       FROM convergence c JOIN convergence r USING (base_point_id, results_version, quantity, knob)
       WHERE c.point_id = p.point_id AND c.results_version = p.results_version AND c.quantity = p.quantity
       AND r.mean IS NOT NULL AND iif(c.mean IS NULL, r.reference, r.point_id = c.point_id) -- finer than any run: as the finest
       ORDER BY c.mean IS NULL, r.n DESC LIMIT 1), 1), 9e999) AS most
-  FROM of_point p WHERE error IS NOT NULL GROUP BY point_id, results_version, quantity)
-SELECT point_id, results_version, quantity, min(error, most) AS half_width,
-  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN NOT open THEN 'known'
-    WHEN error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict
-FROM largest WHERE error > 0 OR open < 2; -- with a knob that never ran, at least 0 tells nothing
+  FROM part p GROUP BY point_id, results_version, quantity HAVING sum(error) IS NOT NULL)

@@ -234,34 +234,74 @@ static void no_error_is_larger_than_a_share_can_move(void **state) {
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(fabs(accuracy.options[i].error - (strcmp(accuracy.options[i].setting, "2e-6") ? 0.7 : 0.6)) < 1e-12);
-  assert_true(accuracy.options[accuracy.reference].own); /* the smaller bound of the coarser level is no merit */
+  assert_string_equal(accuracy.options[accuracy.reference].setting, "2e-6"); /* by the number, as the table shows it */
   accuracy_clear(&accuracy);
   campaign_free(campaign);
 }
 
-/* The time step shows no limit and leaves little, the grains leave far more than is allowed: finer grains are advised.
- */
-static void the_knob_that_leaves_most_is_advised(void **state) {
+/* The scene with a step of 5e-7 s has a study of finer grains, and its level 0.00759 m is the named settings
+ * `reference` of the scene with 1e-6 s. The study with the finest level counts, also there. */
+static void the_study_with_the_finest_level_counts(void **state) {
   (void)state;
-  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct campaign *first = campaign_of(HEAD "accuracy: {within: 0.02}\n"),
+                  *second = campaign_of(HEAD "set: {fidelity.time_step: 0.5 us}\naccuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
-  assert_int_equal(store_open_writer(fixture_path(path, "widest"), &store, NULL, 0, &error), STATUS_OK);
-  add_study(store, campaign, "time_step", 3,
-            (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, true, 2e-6},
-                                   {"1e-6", 0.03, 1e-4, 10, true, true, 1e-6},
-                                   {"5e-7", 0.03, 1e-4, 20, false, true, 5e-7}});
-  add_study(store, campaign, "grains", 2,
-            (const struct level[]){{"0.02", 0.3, 1e-4, 5, false, false, 0.02},
-                                   {"0.01069", 0.2, 1e-4, 10, true, false, 0.01069}});
+  assert_int_equal(store_open_writer(fixture_path(path, "kin"), &store, NULL, 0, &error), STATUS_OK);
+  add_study(store, first, "grains", 2,
+            (const struct level[]){{"0.01069", 0.4, 1e-4, 5, true, false, 0.01069},
+                                   {"0.00759", 0.35, 1e-4, 10, false, false, 0.00759}});
+  add_study(store, first, "time_step", 2,
+            (const struct level[]){{"1e-6", 0.03, 1e-4, 5, true, false, 1e-6},
+                                   {"5e-07", 0.02, 1e-4, 10, false, false, 5e-7}});
+  add_study(store, first, "settings", 2,
+            (const struct level[]){{"standard", NAN, 1e-4, 5, true, false, 0},
+                                   {"reference", 0, 1e-4, 20, false, false, 0}});
+  add_study(store, second, "grains", 3,
+            (const struct level[]){{"0.01069", 0.2, 1e-4, 10, true, false, 0.01069},
+                                   {"0.00759", 0.1, 1e-4, 20, false, false, 0.00759},
+                                   {"0.003795", 0.05, 1e-4, 40, false, false, 0.003795}});
   assert_int_equal(store_close(store, &error), STATUS_OK);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
-  assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_CONTENT);
-  if (!strstr(error.message, "Finer levels of grains, which leaves most of it (0.2)") ||
-      !strstr(error.message, "--knob grains=") || strstr(error.message, "--knob time_step="))
-    fail_msg("%s", error.message);
+  assert_int_equal(accuracy_find(second, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy.count, 3);
+  for (size_t i = 0; i < 3; i++) /* least error first */
+    assert_true(fabs(accuracy.options[i].error - (const double[]){0.07, 0.12, 0.22}[i]) < 1e-12);
   accuracy_clear(&accuracy);
-  campaign_free(campaign);
+  campaign_free(first);
+  campaign_free(second);
+}
+
+/* The advice names the knob that leaves most of the smallest error, which is one with the scene's own grains (the finer
+ * ones have too few results), and what it leaves there. What may lie beyond the levels of the time step, 0.03/(sqrt 2 -
+ * 1) = 0.07, counts to it. */
+static void the_knob_that_leaves_most_is_advised(void **state) {
+  (void)state;
+  static const struct {
+    double grains;
+    const char *advice;
+  } cases[] = {{0.2, "Finer levels of grains, which leaves most of it (0.2), may narrow it"},
+               {0.06, "The results show no limit in time_step up to 5e-07 s"}};
+  for (size_t i = 0; i < 2; i++) {
+    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+    struct store *store = NULL;
+    struct accuracy accuracy;
+    assert_int_equal(store_open_writer(fixture_path(path, "widest"), &store, NULL, 0, &error), STATUS_OK);
+    add_study(store, campaign, "time_step", 3,
+              (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, true, 2e-6},
+                                     {"1e-6", 0.03, 1e-4, 10, true, true, 1e-6},
+                                     {"5e-7", 0.03, 1e-4, 20, false, true, 5e-7}});
+    add_study(store, campaign, "grains", 3,
+              (const struct level[]){{"0.02", 0.3, 1e-4, 5, false, false, 0.02},
+                                     {"0.01069", cases[i].grains, 1e-4, 10, true, false, 0.01069},
+                                     {"0.008", 0.05, NAN, 20, false, false, 0.008}});
+    assert_int_equal(store_close(store, &error), STATUS_OK);
+    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_CONTENT);
+    if (!strstr(error.message, cases[i].advice) || !strstr(error.message, i ? "--knob time_step=" : "--knob grains="))
+      fail_msg("%s", error.message);
+    accuracy_clear(&accuracy);
+    campaign_free(campaign);
+  }
 }
 
 /* No limit is seen, and the levels differ little: the slowest law, of order 0.5, leaves at the finest level the larger
@@ -443,7 +483,7 @@ static void the_least_error_in_a_time(void **state) {
   assert_non_null(strstr(error.message, "15 s"));
   campaign_free(campaign);
 
-  /* Two points share the time. An option without a limit is taken only when there is no other. */
+  /* Two points share the time. */
   campaign = campaign_of(HEAD "vary: {threshold.strain: [1 %, 3 %]}\naccuracy: {processor_time: 60 s}\n");
   store_study(campaign, true);
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
@@ -453,6 +493,33 @@ static void the_least_error_in_a_time(void **state) {
   assert_true(isnan(accuracy_least(&accuracy, 14, &no_limit)));
   assert_true(accuracy_least(&accuracy, 30, &no_limit) == accuracy.options[accuracy.chosen].total && no_limit);
   accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+/* Settings without a bound of their error count by its number, as all others: more time gives no larger error, and half
+ * and twice of the time tell what these times give. */
+static void more_time_gives_no_larger_error(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
+  struct store *store = NULL;
+  assert_int_equal(store_open_writer(fixture_path(path, "more-time"), &store, NULL, 0, &error), STATUS_OK);
+  add_study(store, campaign, "time_step", 2,
+            (const struct level[]){{"2e-6", 0.02, 0.02, 5, false, false, 0}, {"1e-6", 0.01, 0.02, 10, true, false, 0}});
+  add_study(store, campaign, "grains", 1, (const struct level[]){{"0.0075", 0.12, 0.02, 20, false, false, 0}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  double twice = HUGE_VAL; /* of the time before */
+  for (campaign->accuracy_time = 15; campaign->accuracy_time < 4000; campaign->accuracy_time *= 2) {
+    struct accuracy accuracy;
+    bool open = false;
+    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    const double total = accuracy.options[accuracy.chosen].total;
+    assert_true(total <= twice && (total == twice || twice == HUGE_VAL));
+    twice = accuracy_least(&accuracy, 2 * accuracy.point_s, &open);
+    assert_true(twice <= total);
+    for (size_t i = 0; i < accuracy.count; i++)
+      assert_true(accuracy.options[i].seeds == 0 || accuracy.options[i].total >= total);
+    accuracy_clear(&accuracy);
+  }
   campaign_free(campaign);
 }
 
@@ -504,6 +571,7 @@ int main(void) {
                                      cmocka_unit_test(finer_than_any_level),
                                      cmocka_unit_test(a_share_is_one_of_the_settings_own_mean),
                                      cmocka_unit_test(no_error_is_larger_than_a_share_can_move),
+                                     cmocka_unit_test(the_study_with_the_finest_level_counts),
                                      cmocka_unit_test(the_knob_that_leaves_most_is_advised),
                                      cmocka_unit_test(levels_that_differ_little_are_enough),
                                      cmocka_unit_test(an_own_level_that_did_not_run),
@@ -511,6 +579,7 @@ int main(void) {
                                      cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
                                      cmocka_unit_test(a_study_without_the_scenes_own_level),
                                      cmocka_unit_test(the_least_error_in_a_time),
+                                     cmocka_unit_test(more_time_gives_no_larger_error),
                                      cmocka_unit_test(a_varied_input_is_no_choice),
                                      cmocka_unit_test(without_a_study_the_command_is_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
