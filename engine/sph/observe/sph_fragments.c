@@ -5,267 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/grow.h"
+#include "engine/sph/body/kd_tree.h"
 #include "engine/sph/material/material.h"
 #include "schemas/memory.h"
-
-/* ---- pairs of particles ---- */
-
-/* A cell grid: finds all pairs of particles within a multiple of their mean smoothing length. The cells are hashed, on
- * one level per halving of h. Memory grows with n only: neither distant particles (1e9 m away) nor a wide range of
- * sizes cost any. */
-
-enum cell_grid_role { CELL_GRID_ABSENT, CELL_GRID_ACTIVE, CELL_GRID_PASSIVE };
-enum { LEVELS = 64 };
-
-struct item {
-  double at[3], half; /* half = reach h / 2 */
-  uint32_t id;
-  uint8_t level, role;
-};
-
-struct cell_grid {
-  size_t n, mask;    /* present particles; buckets - 1 */
-  struct item *item; /* by bucket */
-  uint32_t *start;   /* by bucket, and one more */
-  double coarsest;   /* m, cells of level 0; each level halves them */
-  double period[3];  /* m; 0 = open */
-  int levels;
-};
-
-struct level {
-  double size[3];
-  int64_t wrap[3]; /* cells along a periodic axis; 1: fewer than three, all in one cell; 0: the axis is open */
-};
-
-static struct level level_at(const struct cell_grid *t, int number) {
-  struct level level;
-  for (int d = 0; d < 3; d++) {
-    level.size[d] = ldexp(t->coarsest, -number);
-    level.wrap[d] = 0;
-    if (t->period[d] > 0) {
-      double cells = floor(t->period[d] / level.size[d]);
-      level.wrap[d] = cells < 3 ? 1 : (int64_t)fmin(cells, 1e15);
-      level.size[d] = t->period[d] / (double)level.wrap[d];
-    }
-  }
-  return level;
-}
-
-static int64_t cell_along(const struct level *level, int axis, double x) {
-  if (level->wrap[axis] == 1)
-    return 0;
-  double cell = floor(x / level->size[axis]);
-  int64_t at = (int64_t)fmin(fmax(cell, -4e18), 4e18);
-  if (level->wrap[axis] > 1) {
-    at %= level->wrap[axis];
-    at += at < 0 ? level->wrap[axis] : 0;
-  }
-  return at;
-}
-
-/* Cells that are neighbours along x have neighbouring buckets. Odd multipliers scatter rows and levels. */
-static size_t bucket_of(const struct cell_grid *t, int level, const int64_t at[3]) {
-  return (size_t)((uint64_t)at[0] + (uint64_t)at[1] * 0x9e3779b97f4a7c15u + (uint64_t)at[2] * 0xc2b2ae3d27d4eb4fu +
-                  (uint64_t)level * 0x165667b19e3779f9u) &
-         t->mask;
-}
-
-static size_t home_of(const struct cell_grid *t, const struct level *level, const struct item *item) {
-  int64_t at[3];
-  for (int d = 0; d < 3; d++)
-    at[d] = cell_along(level, d, item->at[d]);
-  return bucket_of(t, item->level, at);
-}
-
-/* Counting sort into buckets; inside a bucket by ascending id. */
-static void sort_items(struct cell_grid *t, const struct level *level, const struct item *from, uint32_t *bucket) {
-  for (size_t k = 0; k < t->n; k++) {
-    bucket[k] = (uint32_t)home_of(t, &level[from[k].level], &from[k]);
-    t->start[bucket[k] + 1]++;
-  }
-  for (size_t b = 0; b <= t->mask; b++)
-    t->start[b + 1] += t->start[b];
-  for (size_t k = t->n; k-- > 0;)
-    t->item[--t->start[bucket[k] + 1]] = from[k];
-  for (size_t b = 0; b <= t->mask; b++) /* the loop above moved each start to the entry before it: move it back */
-    t->start[b] = t->start[b + 1];
-  t->start[t->mask + 1] = (uint32_t)t->n;
-}
-
-/* The particles that are not absent. Returns the largest reach h, m. */
-static double collect_items(struct cell_grid *t, size_t n, const double *x, const double *y, const double *z,
-                            const double *h, const uint8_t *role, double reach, struct item *items) {
-  double largest = 0;
-  for (size_t i = 0; i < n; i++) {
-    if (role[i] == CELL_GRID_ABSENT)
-      continue;
-    items[t->n++] = (struct item){.at = {x[i], y[i], z[i]},
-                                  .half = 0.5 * reach * h[i],
-                                  .id = (uint32_t)i,
-                                  .role = role[i]};
-    largest = fmax(largest, reach * h[i]);
-  }
-  return largest;
-}
-
-/* The finest level whose cells are at least reach h wide. Level 0 has cells of `largest`. */
-static uint8_t level_for(const struct item *item, double largest) {
-  uint8_t level = 0;
-  for (double bound = largest; 4 * item->half <= bound && level < LEVELS - 1; bound /= 2)
-    level++;
-  return level;
-}
-
-static void cell_grid_free(struct cell_grid *t) {
-  if (!t)
-    return;
-  free(t->item);
-  free(t->start);
-  free(t);
-}
-
-/* A grid for the pairs with r <= reach (h_i + h_j)/2. An axis whose `periodic` length (m) is not NaN uses the minimum
- * image. The position and h of a particle that is not absent must be finite, h > 0. The data are copied.
- * STATUS_MEMORY. */
-static status cell_grid_create(size_t n, const double *x, const double *y, const double *z, const double *h,
-                               const uint8_t *role, double reach, const double periodic[3], struct cell_grid **out,
-                               struct error *error) {
-  *out = NULL;
-  OWNED struct item *from = malloc((n + 1) * sizeof *from);
-  OWNED uint32_t *bucket = malloc((n + 1) * sizeof *bucket);
-  struct level level[LEVELS];
-  struct cell_grid *t = memory_small(1, sizeof *t);
-  const double largest = from ? collect_items(t, n, x, y, z, h, role, reach, from) : 0;
-  for (t->mask = 1; t->mask < 2 * t->n;)
-    t->mask = 2 * t->mask + 1;
-  t->item = malloc((t->n + 1) * sizeof *t->item);
-  t->start = calloc(t->mask + 2, sizeof *t->start);
-  if (!from || !bucket || !t->item || !t->start) {
-    cell_grid_free(t);
-    return status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles are neighbours", n);
-  }
-  t->coarsest = largest * (1 + 1e-9); /* a rounded distance must not skip a cell */
-  for (int d = 0; d < 3; d++)
-    t->period[d] = periodic[d] > 0 ? periodic[d] : 0;
-  t->levels = 1;
-  for (size_t k = 0; k < t->n; k++) {
-    from[k].level = level_for(&from[k], largest);
-    if (from[k].level >= t->levels)
-      t->levels = from[k].level + 1;
-  }
-  for (int l = 0; l < t->levels; l++)
-    level[l] = level_at(t, l);
-  sort_items(t, level, from, bucket);
-  *out = t;
-  return STATUS_OK;
-}
-
-/* `square`: r^2 of the pair, m^2; the same bits for (i, j) and (j, i). */
-typedef void (*cell_grid_pair)(void *context, uint32_t i, uint32_t j, double square);
-struct visit {
-  const struct cell_grid *t;
-  cell_grid_pair pair;
-  void *context;
-  bool passive, periodic;
-};
-
-/* The items of one level in `count` successive buckets. own: the buckets are those of the item's own cell, where a pair
- * is visited from the lower id only. */
-static void visit_buckets(const struct visit *visit, const struct item *item, int number, bool own, size_t bucket,
-                          size_t count) {
-  const struct cell_grid *t = visit->t;
-  for (uint32_t k = t->start[bucket]; k < t->start[bucket + count]; k++) {
-    const struct item *other = &t->item[k];
-    if (other->level != number || other->id == item->id || (own && other->id < item->id))
-      continue;
-    if (visit->passive ? other->role == item->role : other->role == CELL_GRID_PASSIVE)
-      continue;
-    double square = 0, within = item->half + other->half;
-    for (int d = 0; d < 3; d++) {
-      double along = item->at[d] - other->at[d];
-      if (visit->periodic && t->period[d] > 0)
-        along -= t->period[d] * nearbyint(along / t->period[d]);
-      square += along * along;
-    }
-    if (square <= within * within)
-      visit->pair(visit->context, item->id, other->id, square);
-  }
-}
-
-/* One cell, at its image inside the box where an axis is periodic. */
-static void visit_cell(const struct visit *visit, const struct item *item, int number, bool own,
-                       const struct level *level, const int64_t cell[3]) {
-  int64_t at[3];
-  for (int d = 0; d < 3; d++)
-    at[d] = level->wrap[d] ? (cell[d] + level->wrap[d]) % level->wrap[d] : cell[d];
-  visit_buckets(visit, item, number, own, bucket_of(visit->t, number, at), 1);
-}
-
-/* A row of cells along x, from `first` to `last` cells beside home; `own`: the item's own cell is the first of them. */
-static void visit_row(const struct visit *visit, const struct item *item, int number, bool own,
-                      const struct level *level, const int64_t home[3], int first, int last) {
-  const size_t count = (size_t)(last - first + 1);
-  const size_t row = bucket_of(visit->t, number, (int64_t[3]){home[0] + first, home[1], home[2]});
-  const bool in_order = row + count <= visit->t->mask + 1; /* the row of cells is a row of buckets */
-  if (!visit->periodic && !own && in_order) {
-    visit_buckets(visit, item, number, false, row, count);
-    return;
-  }
-  for (int c = first; c <= last; c++)
-    visit_cell(visit, item, number, own && c == 0, level, (const int64_t[3]){home[0] + c, home[1], home[2]});
-}
-
-/* The cells round an item. A pair of two levels is found from its finer item, because the coarser cells hold the reach
- * of both. On the item's own level only the cells that follow its own are visited. */
-static void visit_level(const struct visit *visit, const struct item *item, int number, const struct level *level) {
-  int64_t home[3];
-  int reach[3]; /* cells to either side */
-  for (int d = 0; d < 3; d++) {
-    home[d] = cell_along(level, d, item->at[d]);
-    reach[d] = level->wrap[d] == 1 ? 0 : 1;
-  }
-  const bool same = item->level == number;
-  for (int a = same ? 0 : -reach[2]; a <= reach[2]; a++)
-    for (int b = same && a == 0 ? 0 : -reach[1]; b <= reach[1]; b++) {
-      const bool own = same && a == 0 && b == 0;
-      const int64_t beside[3] = {home[0], home[1] + b, home[2] + a};
-      visit_row(visit, item, number, own, level, beside, own ? 0 : -reach[0], reach[0]);
-    }
-}
-
-/* Visits the pairs of an active and a passive particle if `passive`, else the pairs of two active ones. A pair may come
- * twice (two cells can share a bucket), and the order of the pairs is arbitrary: the result of `pair` must not depend
- * on either. */
-static void cell_grid_visit(const struct cell_grid *t, bool passive, cell_grid_pair pair, void *context) {
-  const struct visit visit = {.t = t,
-                              .pair = pair,
-                              .context = context,
-                              .passive = passive,
-                              .periodic = t->period[0] > 0 || t->period[1] > 0 || t->period[2] > 0};
-  bool filled[LEVELS] = {false};
-  struct level level[LEVELS];
-  for (int l = 0; l < t->levels; l++)
-    level[l] = level_at(t, l);
-  for (size_t k = 0; k < t->n; k++)
-    filled[t->item[k].level] = true;
-  for (size_t k = 0; k < t->n; k++)
-    for (int l = 0; l <= t->item[k].level; l++)
-      if (filled[l] && (passive || t->item[k].role == CELL_GRID_ACTIVE))
-        visit_level(&visit, &t->item[k], l, &level[l]);
-}
-
-/* ---- fragments ---- */
 
 struct sph_fragments_options sph_fragments_default(void) {
   return (struct sph_fragments_options){.damage = 1, .link_length = 1, .layer = true, .periodic = {NAN, NAN, NAN}};
 }
+
+enum role { ABSENT, UNBROKEN, BROKEN };
 
 /* Members are the particles that are not left out. */
 struct search {
   const struct sph_particles *p;
   const struct sph_fragments_options *options;
   struct sph_fragments *out;
-  uint8_t *role;                  /* by particle: enum cell_grid_role; active: unbroken, passive: may join a layer */
+  uint8_t *role;                  /* by particle: enum role; broken ones may join a layer */
   uint32_t *parent;               /* by particle: union-find of the cores */
   double *core_mass;              /* by particle that is a root: kg of its core; else 0 */
   double *nearest;                /* by broken particle: r^2 to its nearest unbroken one, m^2 */
@@ -316,7 +72,7 @@ static void classify(struct search *s) {
     s->parent[i] = (uint32_t)i;
     s->mate[i] = UINT32_MAX;
     s->nearest[i] = HUGE_VAL;
-    s->role[i] = CELL_GRID_ABSENT;
+    s->role[i] = ABSENT;
     s->out->part[i] = SPH_FRAGMENTS_LEFT_OUT;
     s->place[i] = UINT32_MAX;
     if (s->options->bodies && s->options->bodies[p->body[i]].left_out)
@@ -330,9 +86,9 @@ static void classify(struct search *s) {
       continue;
     if (unbroken) {
       s->out->part[i] = SPH_FRAGMENTS_CORE;
-      s->role[i] = CELL_GRID_ACTIVE;
+      s->role[i] = UNBROKEN;
     } else if (s->options->layer) {
-      s->role[i] = CELL_GRID_PASSIVE;
+      s->role[i] = BROKEN;
     }
   }
 }
@@ -342,8 +98,7 @@ static bool friends(const struct search *s, uint32_t i, uint32_t j) {
 }
 
 /* Step 2: joins the cores of two unbroken particles. */
-static void join(void *context, uint32_t i, uint32_t j, double square) {
-  struct search *s = context;
+static void join(struct search *s, uint32_t i, uint32_t j, double square) {
   (void)square;
   if (!friends(s, i, j) || !fragments_join(s->parent, i, j))
     return;
@@ -353,11 +108,10 @@ static void join(void *context, uint32_t i, uint32_t j, double square) {
 
 /* Step 3: of the unbroken particles near a broken one keeps the nearest, then the one of the heavier core, then the one
  * of the core with the lower first particle. */
-static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
-  struct search *s = context;
+static void choose_mate(struct search *s, uint32_t i, uint32_t j, double square) {
   if (!friends(s, i, j))
     return;
-  uint32_t broken = s->role[i] == CELL_GRID_PASSIVE ? i : j, unbroken = broken == i ? j : i;
+  uint32_t broken = s->role[i] == BROKEN ? i : j, unbroken = broken == i ? j : i;
   if (square > s->nearest[broken])
     return;
   if (square == s->nearest[broken]) {
@@ -371,37 +125,114 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
   s->mate[broken] = unbroken;
 }
 
-/* Step 3 where the depth of the layer is given: the pairs within it come from a grid of their own. */
-static status choose_mates_within(struct search *s, double width, struct error *error) {
-  const struct sph_particles *p = s->p;
-  struct cell_grid *grid = NULL;
-  OWNED double *reach = malloc((p->n + 1) * sizeof *reach);
-  if (!reach)
-    return status_fail(error, STATUS_MEMORY, "no memory for the damaged layers of %zu particles", p->n);
-  for (size_t i = 0; i < p->n; i++)
-    reach[i] = width;
-  TRY(cell_grid_create(p->n, p->x, p->y, p->z, reach, s->role, 1, s->options->periodic, &grid, error));
-  cell_grid_visit(grid, true, choose_mate, s);
-  cell_grid_free(grid);
+/* ---- pairs of particles ---- */
+
+/* `square`: r^2 of the pair, m^2; the same bits for (i, j) and (j, i). A pair may come twice, and the order of the
+ * pairs is arbitrary: the result must not depend on either. */
+typedef void (*pair_visitor)(struct search *s, uint32_t i, uint32_t j, double square);
+
+/* The particles that are not absent, in a tree. Along a periodic axis their places there are within the box. */
+struct places {
+  struct sph_kd_tree *tree;
+  size_t n, room; /* room: items of `near` */
+  double *at[3];
+  uint32_t *id, *near; /* near: places that a search finds */
+};
+
+/* The places within `radius` of the k-th one or of its image, `image` boxes away. Returns their number. STATUS_MEMORY.
+ */
+static status find_near(struct places *places, size_t k, const int image[3], const double periodic[3], double radius,
+                        size_t *found, struct error *error) {
+  double from[3];
+  *found = 0;
+  for (int d = 0; d < 3; d++) {
+    from[d] = places->at[d][k] + (image[d] ? image[d] * periodic[d] : 0);
+    if (image[d] && !(from[d] + radius >= 0 && from[d] - radius <= periodic[d]))
+      return STATUS_OK; /* it is out of reach, or the axis is open */
+  }
+  *found = sph_kd_tree_within(places->tree, from, radius, places->near, places->room);
+  if (*found <= places->room)
+    return STATUS_OK;
+  TRY(grow_or_fail(&places->near, &places->room, *found, sizeof *places->near, "the neighbours of a particle", error));
+  sph_kd_tree_within(places->tree, from, radius, places->near, places->room);
   return STATUS_OK;
 }
 
-/* Links of the cores, then of their layers. */
+/* Visits the pairs of the k-th particle with particles of the same or a smaller h. */
+static status visit_around(struct search *s, struct places *places, size_t k, const double *h, double reach,
+                           enum role other, pair_visitor visit, struct error *error) {
+  const double *const x[] = {s->p->x, s->p->y, s->p->z}, *const periodic = s->options->periodic;
+  const uint32_t i = places->id[k];
+  for (int number = 0; number < 27; number++) {
+    const int image[3] = {number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1};
+    size_t found; /* a rounded distance must not hide one */
+    TRY(find_near(places, k, image, periodic, reach * h[i] * (1 + 1e-9), &found, error));
+    for (size_t m = 0; m < found; m++) {
+      const uint32_t j = places->id[places->near[m]];
+      if (j == i || s->role[j] != other || h[j] > h[i])
+        continue;
+      double square = 0, within = 0.5 * reach * h[i] + 0.5 * reach * h[j];
+      for (int d = 0; d < 3; d++) {
+        double along = x[d][i] - x[d][j];
+        if (periodic[d] > 0)
+          along -= periodic[d] * nearbyint(along / periodic[d]);
+        square += along * along;
+      }
+      if (square <= within * within)
+        visit(s, i, j, square);
+    }
+  }
+  return STATUS_OK;
+}
+
+/* Visits the pairs of an unbroken particle and another one, broken or not, with r <= reach (h_i + h_j)/2. */
+static status visit_pairs(struct search *s, const double *h, double reach, enum role other, pair_visitor visit,
+                          struct error *error) {
+  const size_t n = s->p->n;
+  const double *const x[] = {s->p->x, s->p->y, s->p->z}, *const periodic = s->options->periodic;
+  OWNED double *at = malloc((3 * n + 1) * sizeof *at);
+  OWNED uint32_t *id = malloc((n + 1) * sizeof *id);
+  struct places places = {.at = {at, at + n, at + 2 * n}, .id = id};
+  if (!at || !id)
+    return status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles are neighbours", n);
+  for (size_t i = 0; i < n; i++) {
+    if (s->role[i] == ABSENT)
+      continue;
+    for (int d = 0; d < 3; d++)
+      places.at[d][places.n] = periodic[d] > 0 ? x[d][i] - periodic[d] * floor(x[d][i] / periodic[d]) : x[d][i];
+    id[places.n++] = (uint32_t)i;
+  }
+  if (places.n == 0)
+    return STATUS_OK;
+  status code = sph_kd_tree_create(places.n, places.at[0], places.at[1], places.at[2], &places.tree, error);
+  for (size_t k = 0; k < places.n && !code; k++)
+    if (s->role[id[k]] == UNBROKEN)
+      code = visit_around(s, &places, k, h, reach, other, visit, error);
+    else if (other == BROKEN)
+      code = visit_around(s, &places, k, h, reach, UNBROKEN, visit, error);
+  sph_kd_tree_free(places.tree);
+  free(places.near);
+  return code;
+}
+
+/* Links of the cores, then of their layers. A given depth of the layer takes the place of the links there. */
 static status link_members(struct search *s, struct error *error) {
   const struct sph_particles *p = s->p;
-  const double width = s->options->layer_width;
-  struct cell_grid *grid = NULL;
-  TRY(cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role, s->options->link_length,
-                       s->options->periodic, &grid, error));
-  cell_grid_visit(grid, false, join, s);
-  for (size_t i = 0; i < p->n; i++)
-    if (s->role[i] == CELL_GRID_ACTIVE)
+  const struct sph_fragments_options *o = s->options;
+  const double *h = o->h ? o->h : p->h;
+  OWNED double *width = malloc((p->n + 1) * sizeof *width);
+  if (!width)
+    return status_fail(error, STATUS_MEMORY, "no memory for the damaged layers of %zu particles", p->n);
+  TRY(visit_pairs(s, h, o->link_length, UNBROKEN, join, error));
+  for (size_t i = 0; i < p->n; i++) {
+    width[i] = o->layer_width;
+    if (s->role[i] == UNBROKEN)
       s->core_mass[fragments_root(s->parent, (uint32_t)i)] += p->mass[i];
-  if (s->options->layer && !(width > 0))
-    cell_grid_visit(grid, true, choose_mate, s);
-  cell_grid_free(grid);
-  if (s->options->layer && width > 0)
-    TRY(choose_mates_within(s, width, error));
+  }
+  if (o->layer && o->layer_width > 0)
+    TRY(visit_pairs(s, width, 1, BROKEN, choose_mate, error));
+  else if (o->layer)
+    TRY(visit_pairs(s, h, o->link_length, BROKEN, choose_mate, error));
   for (size_t i = 0; i < p->n; i++)
     if (s->mate[i] != UINT32_MAX) {
       s->out->part[i] = SPH_FRAGMENTS_LAYER;
