@@ -55,8 +55,9 @@ static status unknown_builtin(const char *name, struct error *error) {
 
 enum { PATH_SIZE = 256 };
 
-/* Keys of a material's document that are not values. */
-static const char *const material_words[] = {"material", "source", "sources", "like", NULL};
+/* Keys of a material's document that are not values; and those of them that another document does not take over. */
+static const char *const material_words[] = {"sources", "material", "source", "like", NULL};
+static const char *const *const own_words = material_words + 1;
 
 /* Does the input name a document? */
 static bool is_open(const struct field *row) {
@@ -96,9 +97,10 @@ static status take_like(document_node *root, document_node *node, const struct e
     return word ? materials->load(word, unused, error)
                 : status_fail(error, STATUS_CONTENT, "expected the name of a material, such as like: granite");
   TRY(document_parse(word, text, strlen(text), &base, error));
+  (void)scene_material_complete(document_root(base), materials); /* it may be like another one */
   drop_other_name(root, document_root(base), materials);
-  return document_graft(root, base, material_words) ? STATUS_OK
-                                                    : status_fail(error, STATUS_MEMORY, "no memory for a material");
+  return document_graft(root, base, own_words) ? STATUS_OK
+                                               : status_fail(error, STATUS_MEMORY, "no memory for a material");
 }
 
 bool scene_material_complete(document_node *root, const struct engine_materials *materials) {

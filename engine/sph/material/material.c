@@ -118,7 +118,9 @@ status sph_materials_source(const char *name, const char *path, char source[FIEL
   source[0] = '\0';
   if (!text || document_parse(name, text, strlen(text), &document, NULL) != STATUS_OK)
     return STATUS_MISSING;
-  document_node *root = document_root(document), *sources = document_key(root, "sources");
+  document_node *root = document_root(document);
+  (void)scene_material_complete(root, &sph_materials);
+  document_node *sources = document_key(root, "sources");
   document_node *found = sources ? find_section(sources, path) : NULL;
   if (!found)
     found = document_key(root, "source");
