@@ -51,6 +51,24 @@ struct condition {
 #define CONDITION(word_, ...)                                                                                          \
   { .word = word_, __VA_ARGS__ }
 
+/* The two functions of a row that is one expression: of the inputs `in`, before the run; and of `r`, with the engine's
+ * `run`, its inputs `in` and its `results`. An engine's file gives them its types: BEFORE(name, expression). */
+#define CONDITION_BEFORE(inputs_, name_, ...)                                                                          \
+  static double name_(const void *inputs) {                                                                            \
+    const inputs_ *in = inputs;                                                                                        \
+    return __VA_ARGS__;                                                                                                \
+  }
+#define CONDITION_AFTER(inputs_, run_, results_, name_, ...)                                                           \
+  static double name_(const struct condition_run *r) {                                                                 \
+    const inputs_ *in = r->inputs;                                                                                     \
+    const run_ *run = r->run;                                                                                          \
+    const results_ *results = r->results;                                                                              \
+    (void)in, (void)run, (void)results;                                                                                \
+    return __VA_ARGS__;                                                                                                \
+  }
+/* A number where the condition applies; NaN elsewhere. */
+#define CONDITION_ONLY(applies, number) ((applies) ? (number) : (double)NAN)
+
 /* Is a number beyond the bound, by more than rounding? Not when it is NaN. */
 bool condition_broken(const struct condition *condition, double number);
 

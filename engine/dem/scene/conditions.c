@@ -5,38 +5,26 @@
 #include "engine/condition.h"
 #include "engine/dem/run/run.h"
 
-static const struct dem_run *run_of(const struct condition_run *r) {
-  return r->run;
-}
+#define BEFORE(name, ...) CONDITION_BEFORE(struct dem_inputs, name, __VA_ARGS__)
+#define AFTER(name, ...)  CONDITION_AFTER(struct dem_inputs, struct dem_run, struct dem_results, name, __VA_ARGS__)
+#define ONLY              CONDITION_ONLY
 
 /* ---- the integration ---- */
 
-static double drift(const struct condition_run *r) {
-  return r->outcome->energy_error;
-}
+AFTER(drift, r->outcome->energy_error)
 
-static double step_before(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return in->fidelity.time_step / dem_describe_stable_step(in);
-}
+BEFORE(step_before, in->fidelity.time_step / dem_describe_stable_step(in))
 
 static void step_estimated(const void *inputs, FILE *out) {
   (void)inputs;
   fputs(", estimated for the least stable of 40 bodies: each body has its own limit", out);
 }
 
-static double step_after(const struct condition_run *r) {
-  return run_of(r)->inputs.fidelity.time_step / run_of(r)->stable_time_step;
-}
+AFTER(step_after, in->fidelity.time_step / run->stable_time_step)
 
-static double damping(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return dem_describe_damping(in) * in->fidelity.time_step;
-}
+BEFORE(damping, dem_describe_damping(in) * in->fidelity.time_step)
 
-static double angular(const struct condition_run *r) {
-  return ((const struct dem_results *)r->results)->angular_momentum_error;
-}
+AFTER(angular, results->angular_momentum_error)
 
 /* ---- contacts ---- */
 
@@ -61,19 +49,13 @@ static double passing_before(const void *inputs) {
 }
 
 /* Bodies or grains that fly, without contacts. */
-static double untouchable(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return !dem_inputs_loaded(in) && in->contact.law == DEM_CONTACT_OFF;
-}
+BEFORE(untouchable, !dem_inputs_loaded(in) && in->contact.law == DEM_CONTACT_OFF)
 
-static double passing_after(const struct condition_run *r) {
-  const struct dem_run *run = run_of(r);
-  return run->passing_speed > 0 ? dem_system_fastest_approach(run->system) / run->passing_speed : (double)NAN;
-}
+AFTER(passing_after, ONLY(run->passing_speed > 0, dem_system_fastest_approach(run->system) / run->passing_speed))
 
 /* Share of the beams that broke before the end of the strains whose slope is the modulus of a block in compression. */
 static double sloped(const struct condition_run *r) {
-  const struct dem_run *run = run_of(r);
+  const struct dem_run *run = r->run;
   const struct dem_results *results = r->results;
   if (run->inputs.kind != DEM_COMPRESSION)
     return NAN;
@@ -89,16 +71,15 @@ static double sloped(const struct condition_run *r) {
  * store hides a part. */
 static double gain(const struct condition_run *r) {
   const struct dem_results *results = r->results;
-  const struct dem_ledger ledger = dem_system_ledger(run_of(r)->system);
+  const struct dem_run *run = r->run;
+  const struct dem_ledger ledger = dem_system_ledger(run->system);
   return (ledger.begun - fmin(ledger.contact, 0)) / results->energy_input;
 }
 
 /* Damping between joined grains without any damping. */
-static double undamped(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return in->contact.law != DEM_CONTACT_OFF && in->contact.damping_bonded && !(in->contact.normal_damping > 0) &&
-         !(in->contact.tangential_damping > 0 && in->contact.friction > 0);
-}
+BEFORE(undamped, in->contact.law != DEM_CONTACT_OFF && in->contact.damping_bonded &&
+                     !(in->contact.normal_damping > 0) &&
+                     !(in->contact.tangential_damping > 0 && in->contact.friction > 0))
 
 /* A modulus of overlaps that is not the default, and no force of overlaps. */
 static double unpressed(const void *inputs) {
@@ -108,10 +89,7 @@ static double unpressed(const void *inputs) {
 }
 
 /* One of friction and tangential damping without the other. */
-static double alone(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return in->contact.law != DEM_CONTACT_OFF && (in->contact.friction > 0) != (in->contact.tangential_damping > 0);
-}
+BEFORE(alone, in->contact.law != DEM_CONTACT_OFF && (in->contact.friction > 0) != (in->contact.tangential_damping > 0))
 
 /* ---- what a result needs to have happened ---- */
 
@@ -131,7 +109,7 @@ static double crossing(const struct dem_inputs *in) {
  * stand three grains apart at the start; rough discs may meet, and break, before the circles do.
  * fmin() leaves out a first break that is off. */
 static double unfinished(const struct condition_run *r) {
-  const struct dem_run *run = run_of(r);
+  const struct dem_run *run = r->run;
   const struct dem_inputs *in = &run->inputs;
   if (dem_inputs_loaded(in) || !in->threshold.breaking)
     return NAN;
@@ -147,7 +125,7 @@ static double unfinished(const struct condition_run *r) {
 /* Momentum that one disc would give the other, by the force of now, while a wave crosses it; over that of its approach.
  */
 static double pressing(const struct condition_run *r) {
-  const struct dem_run *run = run_of(r);
+  const struct dem_run *run = r->run;
   const struct dem_inputs *in = &run->inputs;
   double force[2] = {0, 0}, mass = 0, fx, fy, torque;
   for (uint32_t grain = 0; grain < run->tessellation->joined_at; grain++) { /* none of one body */
@@ -159,14 +137,9 @@ static double pressing(const struct condition_run *r) {
   return mass > 0 ? hypot(force[0], force[1]) * crossing(in) / (mass * in->collision.speed / 2) : (double)NAN;
 }
 
-static double quiet(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return dem_inputs_loaded(in) ? (double)NAN : fmax(in->stop.quiet_time, in->stop.least_time) / crossing(in);
-}
+BEFORE(quiet, dem_inputs_loaded(in) ? (double)NAN : fmax(in->stop.quiet_time, in->stop.least_time) / crossing(in))
 
-static double grains(const void *inputs) {
-  return dem_inputs_loaded(inputs) ? (double)NAN : dem_inputs_grains(inputs);
-}
+BEFORE(grains, dem_inputs_loaded(in) ? (double)NAN : dem_inputs_grains(in))
 
 /* Of a loaded block the columns or rows, whichever are fewer. A regular lattice has exact moduli with any number. */
 static double across(const void *inputs) {
@@ -175,13 +148,9 @@ static double across(const void *inputs) {
   return dem_inputs_loaded(in) && !exact ? fmin((double)in->body.columns, (double)in->body.rows) : (double)NAN;
 }
 
-static double joined(const struct condition_run *r) {
-  return (double)(r->outcome->fragment_count - r->outcome->single_count);
-}
+AFTER(joined, (double)(r->outcome->fragment_count - r->outcome->single_count))
 
-static double cut(const struct condition_run *r) {
-  return r->outcome->state == OUTCOME_END_TIME;
-}
+AFTER(cut, r->outcome->state == OUTCOME_END_TIME)
 
 /* Crossings of the block by a wave while the sides move at full speed, up to a strain. They count one and a half
  * times where the ramp lasts two crossings: it leaves hardly any waves. */
@@ -197,55 +166,38 @@ static double crossings_to(const struct dem_inputs *in, double strain) {
   return (in->loading.ramp >= 2 * crossing_time ? 1.5 : 1) * fmax(0, duration) / crossing_time;
 }
 
-static double crossings(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return crossings_to(in, in->loading.strain_end);
-}
+BEFORE(crossings, crossings_to(in, in->loading.strain_end))
 
 /* NaN: it did not fail. */
-static double crossings_to_failure(const struct condition_run *r) {
-  const struct dem_results *results = r->results;
-  return results->broken > 0 ? crossings_to(r->inputs, results->failure_strain) : (double)NAN;
-}
+AFTER(crossings_to_failure, ONLY(results->broken > 0, crossings_to(in, results->failure_strain)))
 
 /* Up to the failure of a block in compression, to the end of the slope under a uniaxial load. */
 static double crossings_made(const struct condition_run *r) {
   const struct dem_inputs *in = r->inputs;
   const double to_failure = crossings_to_failure(r);
   if (in->kind == DEM_UNIAXIAL)
-    return crossings_to(in, dem_loading_slope_end(run_of(r)));
+    return crossings_to(in, dem_loading_slope_end(r->run));
   return isnan(to_failure) ? crossings(in) : to_failure;
 }
 
 /* No block fails later. One of 12 x 20 grains fails at 0.9 to 2.4 % whether beams break at 0.1 or 2 %. */
-static double crossings_at_most(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return in->threshold.breaking ? crossings(inputs) : (double)NAN;
-}
+BEFORE(crossings_at_most, ONLY(in->threshold.breaking, crossings(in)))
 
 /* Change of the slope from the first half of its strains to the second one. */
-static double curved(const struct condition_run *r) {
-  const struct dem_run *run = run_of(r);
-  return run->inputs.kind == DEM_UNIAXIAL ? dem_loading_bend(run) : (double)NAN;
-}
+AFTER(curved, ONLY(in->kind == DEM_UNIAXIAL, dem_loading_bend(run)))
 
-static double amplitude(const void *inputs) {
-  const struct dem_inputs *in = inputs;
-  return in->kind == DEM_UNIAXIAL ? in->loading.strain_end : (double)NAN;
-}
+BEFORE(amplitude, ONLY(in->kind == DEM_UNIAXIAL, in->loading.strain_end))
 
 /* The last stress over the largest one: near 1 the block still bears its load. */
 static double unbroken(const struct condition_run *r) {
-  const struct dem_run *run = run_of(r);
+  const struct dem_run *run = r->run;
   const size_t samples = run->state.frame.samples;
   if (!dem_inputs_loaded(&run->inputs) || !run->inputs.threshold.breaking || samples == 0)
     return NAN;
   return fabs(run->sample[samples - 1].stress) / run->state.stress_peak;
 }
 
-static double whole(const struct condition_run *r) {
-  return dem_inputs_loaded(r->inputs) && ((const struct dem_results *)r->results)->broken == 0;
-}
+AFTER(whole, dem_inputs_loaded(in) && results->broken == 0)
 
 #define OF_THE_LARGEST "largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest"
 

@@ -9,13 +9,9 @@
 #include "engine/sph/scene/derived.h"
 #include "engine/vector3.h"
 
-static const struct sph_run *run_of(const struct condition_run *r) {
-  return r->run;
-}
-
-static const struct sph_results *results_of(const struct condition_run *r) {
-  return r->results;
-}
+#define BEFORE(name, ...) CONDITION_BEFORE(struct sph_inputs, name, __VA_ARGS__)
+#define AFTER(name, ...)  CONDITION_AFTER(struct sph_inputs, struct sph_run, struct sph_results, name, __VA_ARGS__)
+#define ONLY              CONDITION_ONLY
 
 static bool is_porous(const struct sph_body_inputs *body) {
   return body->material.palpha.curve != SPH_CRUSH_NONE && body->material.palpha.distention > 1;
@@ -23,30 +19,17 @@ static bool is_porous(const struct sph_body_inputs *body) {
 
 /* ---- the integration ---- */
 
-static double drift(const struct condition_run *r) {
-  return r->outcome->energy_error;
-}
+AFTER(drift, r->outcome->energy_error)
 
-static double courant(const void *inputs) {
-  return ((const struct sph_inputs *)inputs)->fidelity.cfl;
-}
+BEFORE(courant, in->fidelity.cfl)
 
-static double courant_undamped(const void *inputs) {
-  const double steady = sph_derived_cfl(inputs);
-  return steady < SPH_INPUTS_CFL ? courant(inputs) / steady : (double)NAN;
-}
+BEFORE(courant_undamped, ONLY(sph_derived_cfl(in) < SPH_INPUTS_CFL, courant(in) / sph_derived_cfl(in)))
 
-static double clamped(const struct condition_run *r) {
-  return results_of(r)->clamped_share;
-}
+AFTER(clamped, results->clamped_share)
 
-static double held(const struct condition_run *r) {
-  return results_of(r)->density_held_share;
-}
+AFTER(held, results->density_held_share)
 
-static double angular(const struct condition_run *r) {
-  return results_of(r)->angular_momentum_error;
-}
+AFTER(angular, results->angular_momentum_error)
 
 /* Ratio of the densities of target and projectile; 1 where it causes no error. */
 static double contrast(const void *inputs) {
@@ -59,10 +42,7 @@ static double contrast(const void *inputs) {
 
 /* ---- too few particles for the number ---- */
 
-static double smoothing(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->gradient_correction.on ? (double)NAN : in->fidelity.smoothing;
-}
+BEFORE(smoothing, in->gradient_correction.on ? (double)NAN : in->fidelity.smoothing)
 
 /* Radius of the projectile over the coarser spacing of both bodies. The radius is that of the sphere of the
  * projectile's volume; of a plate, rod or tube, that of the sphere of the volume of a cube as wide as its thinnest
@@ -76,15 +56,17 @@ static double spacings(const void *inputs) {
   return radius / (sph_derived_fine_spacing(in) * fmax(1, in->fidelity.projectile_spacing));
 }
 
+/* m: the edge of a cube of its volume. */
+static double size_of(const struct sph_shape shape) {
+  return cbrt(sph_shape_volume(&shape));
+}
+
 static double wall(const struct sph_body_inputs *body) {
   return body->radius - body->inner_radius;
 }
 
 /* Spacings through the wall of colliding rings, or through the radius of cylinders. */
-static double layers(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_COLLISION ? wall(&in->target) / sph_derived_spacing(in) : (double)NAN;
-}
+BEFORE(layers, ONLY(in->kind == SPH_COLLISION, wall(&in->target) / sph_derived_spacing(in)))
 
 /* m: the spacing by which a target as a whole is resolved, the coarsest one. A half-space is resolved where it is hit:
  * its far part only lets waves out. */
@@ -113,80 +95,43 @@ static bool graded(const void *inputs) {
 }
 
 /* Of a whole body 0 is right. In a graded body the coarse particles may all have stayed in the largest fragment. */
-static double dust_of_pieces(const struct condition_run *r) {
-  const struct sph_inputs *in = r->inputs;
-  if (r->outcome->fragment_count < 2)
-    return NAN;
-  return sph_derived_is_graded(in) ? in->fragments.dust_mass / run_of(r)->heaviest_off : dust(in);
-}
+AFTER(dust_of_pieces,
+      ONLY(r->outcome->fragment_count > 1, graded(in) ? in->fragments.dust_mass / run->heaviest_off : dust(in)))
 
-static double largest(const struct condition_run *r) {
-  return r->outcome->largest_fraction * r->outcome->total_mass / r->outcome->complete_mass;
-}
+AFTER(largest, r->outcome->largest_fraction * r->outcome->total_mass / r->outcome->complete_mass)
 
 /* Distance over the spacing up to which particles at rest belong together, over the distance of nearest neighbours: of
  * irregular bodies, the distance from which all particles hang together (1.07 spacings with 300 particles, 1.11 with
  * 10 000). */
-static double reach(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const double nearest = in->target.lattice == SPH_LATTICE_CUBIC ? 1 : 1.122462048309373;
-  return in->fragments.link_length * in->fidelity.smoothing / nearest;
-}
+BEFORE(reach, in->fragments.link_length * in->fidelity.smoothing /
+                  (in->target.lattice == SPH_LATTICE_CUBIC ? 1 : 1.122462048309373))
 
 /* Width of the cells over the edge of a cube of the target's volume. */
-static double cells(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const struct sph_shape target = sph_derived_target(in);
-  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in)
-             ? in->crack_cell.width / cbrt(sph_shape_volume(&target))
-             : (double)NAN;
-}
+BEFORE(cells, ONLY(in->crack_cell.width > 0 && sph_derived_scene_cracks(in),
+                   in->crack_cell.width / size_of(sph_derived_target(in))))
 
 /* Width of the cells over the spacing of the target as a whole. */
-static double narrow(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->crack_cell.width > 0 && sph_derived_scene_cracks(in) ? in->crack_cell.width / whole_spacing(in)
-                                                                  : (double)NAN;
-}
+BEFORE(narrow, ONLY(in->crack_cell.width > 0 && sph_derived_scene_cracks(in), in->crack_cell.width / whole_spacing(in)))
 
 /* The larger of both viscosities over the largest usual one. With reconstruction a smooth flow feels none of it. */
-static double viscous(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const double usual = in->reconstruction.on && in->gradient_correction.on ? 2 : 1;
-  return fmax(in->viscosity.alpha / 2, in->viscosity.beta / 6) / usual;
-}
+BEFORE(viscous, fmax(in->viscosity.alpha / 2, in->viscosity.beta / 6) /
+                    (in->reconstruction.on && in->gradient_correction.on ? 2 : 1))
 
-static double liquid(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_IMPACT && !in->target.strength;
-}
+BEFORE(liquid, in->kind == SPH_IMPACT && !in->target.strength)
 
-static double soft(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_VIBRATION && (!in->gradient_correction.on || in->target.turned);
-}
+BEFORE(soft, in->kind == SPH_VIBRATION && (!in->gradient_correction.on || in->target.turned))
 
-static double sampled(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  const double period = 2 * in->target.length / sph_derived_wave_speed(&in->target);
-  return in->kind == SPH_VIBRATION ? SPH_SAMPLES * period / in->stop.end_time : (double)NAN;
-}
+BEFORE(sampled, ONLY(in->kind == SPH_VIBRATION,
+                     SPH_SAMPLES *(2 * in->target.length / sph_derived_wave_speed(&in->target)) / in->stop.end_time))
 
 /* Whole pores widen no further in tension (material/palpha.h). */
-static double uneven(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_VIBRATION && is_porous(&in->target) && !field_is_off(in->target.material.palpha.sound_speed);
-}
+BEFORE(uneven,
+       in->kind == SPH_VIBRATION && is_porous(&in->target) && !field_is_off(in->target.material.palpha.sound_speed))
 
-static double stout(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_VIBRATION && in->target.shape == SPH_SHAPE_CYLINDER ? in->target.radius / in->target.length
-                                                                             : (double)NAN;
-}
+BEFORE(stout,
+       ONLY(in->kind == SPH_VIBRATION && in->target.shape == SPH_SHAPE_CYLINDER, in->target.radius / in->target.length))
 
-static double cracked(const struct condition_run *r) {
-  return run_of(r)->inputs.kind == SPH_VIBRATION ? results_of(r)->mean_damage : (double)NAN;
-}
+AFTER(cracked, ONLY(in->kind == SPH_VIBRATION, results->mean_damage))
 
 /* The largest tension in the middle of the bar, in an elastic bar that has its energy, over that which is cut off. */
 static double torn(const void *inputs) {
@@ -197,19 +142,12 @@ static double torn(const void *inputs) {
   return in->kind == SPH_VIBRATION && in->target.strength ? stress / 3 / material->tension_limit.pressure : (double)NAN;
 }
 
-static double amplitude(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_VIBRATION ? in->vibration.speed / sph_derived_wave_speed(&in->target) : (double)NAN;
-}
+BEFORE(amplitude, ONLY(in->kind == SPH_VIBRATION, in->vibration.speed / sph_derived_wave_speed(&in->target)))
 
 /* The same distance, over that of the second neighbours. */
-static double reach_too_far(const void *inputs) {
-  return reach(inputs) / sqrt(2);
-}
+BEFORE(reach_too_far, reach(in) / sqrt(2))
 
-static double reach_of_start(const struct condition_run *r) {
-  return run_of(r)->has_gaps ? 0 : 2;
-}
+AFTER(reach_of_start, run->has_gaps ? 0 : 2)
 
 /* Bytes behind the last triangle of the bodies' shape files. */
 static double tail(const void *inputs) {
@@ -230,10 +168,7 @@ static double compression(const void *inputs) {
   return exact.shock.density / exact.first_density;
 }
 
-static double leaks(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  return run->inputs.kind == SPH_PISTON && sph_plate_leaks(run) ? HUGE_VAL : (double)NAN;
-}
+AFTER(leaks, ONLY(in->kind == SPH_PISTON && sph_plate_leaks(run), HUGE_VAL))
 
 /* End of the run over the time at which the first front reaches the far side. */
 static double arrival(const void *inputs) {
@@ -247,20 +182,17 @@ static double arrival(const void *inputs) {
 
 /* The larger of the errors of pressure and speed of the shock. A plateau that was not found is wrong, too. */
 static double plateau(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
+  const struct sph_run *run = r->run;
   if (run->inputs.kind != SPH_PISTON || !run->exact.has_shock)
     return NAN;
-  const struct sph_results *results = results_of(r);
+  const struct sph_results *results = r->results;
   const double pressure = fabs(results->shock.pressure / results->shock.pressure_exact - 1),
                speed = fabs(results->shock.speed / results->shock.speed_exact - 1);
   return isnan(pressure + speed) ? HUGE_VAL : fmax(pressure, speed);
 }
 
-static double precursor(const struct condition_run *r) {
-  const struct sph_results *results = results_of(r);
-  return fmax(fabs(results->precursor.speed / results->precursor.speed_exact - 1),
-              fabs(results->precursor.pressure / results->precursor.pressure_exact - 1));
-}
+AFTER(precursor, fmax(fabs(results->precursor.speed / results->precursor.speed_exact - 1),
+                      fabs(results->precursor.pressure / results->precursor.pressure_exact - 1)))
 
 /* ---- waves in bodies ---- */
 
@@ -272,18 +204,15 @@ static double front(const void *inputs) {
   const double spacings = 2 * in->viscosity.alpha * in->fidelity.smoothing;
   double share = NAN;
   if ((in->kind == SPH_IMPACT || in->kind == SPH_COLLISION) && is_porous(&in->target)) {
-    const struct sph_shape target = sph_derived_target(in);
     const bool box = in->target.shape == SPH_SHAPE_BOX, turned = in->kind == SPH_COLLISION;
     share = spacings * whole_spacing(in) /
             (turned ? 2 * wall(&in->target)
              : box  ? sph_derived_shortest_side(&in->target)
-                    : cbrt(sph_shape_volume(&target)));
+                    : size_of(sph_derived_target(in)));
   }
-  if (sph_derived_has_projectile(in) && is_porous(&in->projectile)) {
-    const struct sph_shape projectile = sph_derived_projectile(in);
+  if (sph_derived_has_projectile(in) && is_porous(&in->projectile))
     share = fmax(share, spacings * sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing /
-                            cbrt(sph_shape_volume(&projectile)));
-  }
+                            size_of(sph_derived_projectile(in)));
   return share;
 }
 
@@ -322,49 +251,31 @@ static double strength_before(const void *inputs) {
   return both[0] / both[1];
 }
 
-static double strength_after(const struct condition_run *r) {
-  return is_rod_with_flaws(r->inputs) ? results_of(r)->peak.stress / lawful_strength(r->inputs) : (double)NAN;
-}
+AFTER(strength_after, ONLY(is_rod_with_flaws(in), results->peak.stress / lawful_strength(in)))
 
 /* ---- contact ---- */
 
-static double approach(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->contact.rule == SPH_CONTACT_WELDED ? sph_derived_approach(in) : (double)NAN;
-}
+BEFORE(approach, ONLY(in->contact.rule == SPH_CONTACT_WELDED, sph_derived_approach(in)))
 
 /* The same, of a target that stays whole. */
-static double approach_of_whole(const struct condition_run *r) {
-  const struct sph_inputs *in = r->inputs;
-  return in->kind == SPH_IMPACT && results_of(r)->mean_damage < 0.1 ? approach(in) : (double)NAN;
-}
+AFTER(approach_of_whole, ONLY(in->kind == SPH_IMPACT && results->mean_damage < 0.1, approach(in)))
 
 /* ---- what a result needs to have happened ---- */
 
 /* stop.quiet_time over the time in which a wave crosses the target. */
-static double quiet(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind != SPH_PISTON && sph_derived_cracks(&in->target) ? in->stop.quiet_time / sph_derived_crossing(in)
-                                                                   : (double)NAN;
-}
+BEFORE(quiet,
+       ONLY(in->kind != SPH_PISTON && sph_derived_cracks(&in->target), in->stop.quiet_time / sph_derived_crossing(in)))
 
-static double growth(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return sph_derived_cracks(&in->target) ? in->stop.quiet_growth : (double)NAN;
-}
+BEFORE(growth, ONLY(sph_derived_cracks(&in->target), in->stop.quiet_growth))
 
-static double cut(const struct condition_run *r) {
-  return r->outcome->state == OUTCOME_END_TIME;
-}
+AFTER(cut, r->outcome->state == OUTCOME_END_TIME)
 
-static double shaped(const struct condition_run *r) {
-  return results_of(r)->shapes.shaped ? (double)results_of(r)->shapes.shaped : (double)NAN;
-}
+AFTER(shaped, ONLY(results->shapes.shaped, (double)results->shapes.shaped))
 
 /* The momentum enhancement takes matter of the projectile that does not fly back as if it moved with the rest of the
  * target. The momentum along the normal that this matter has beyond that, over what the projectile brought. */
 static double flown(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
+  const struct sph_run *run = r->run;
   const struct sph_inputs *in = &run->inputs;
   const struct sph_particles *now = run->now;
   const struct sph_range target = run->range[0], projectile = run->range[1];
@@ -387,9 +298,7 @@ static double flown(const struct condition_run *r) {
 }
 
 /* Ejecta of a body that is whole. */
-static double attached(const struct condition_run *r) {
-  return r->outcome->fragment_count == 1 ? results_of(r)->ejecta.mass_fraction : (double)NAN;
-}
+AFTER(attached, ONLY(r->outcome->fragment_count == 1, results->ejecta.mass_fraction))
 
 /* Has the other body changed the target's momentum? Few particles overlap, and press, later than their surfaces meet.
  */
@@ -411,39 +320,34 @@ static bool is_hit(const struct sph_run *run) {
  * from the far side. A rod is pulled until it breaks. */
 static double unfinished(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
-  const bool broke = !isnan(run_of(r)->state.first_damage), half_space = in->sides.far == SPH_FAR_DAMPED;
+  const struct sph_run *run = r->run;
+  const bool broke = !isnan(run->state.first_damage), half_space = in->sides.far == SPH_FAR_DAMPED;
   if (is_rod_with_flaws(in))
     return broke ? (double)NAN : HUGE_VAL;
   if (in->kind != SPH_IMPACT && in->kind != SPH_COLLISION)
     return NAN;
-  if (!is_hit(run_of(r)))
+  if (!is_hit(run))
     return HUGE_VAL;
   const double crossing = half_space && !sph_derived_cracks(&in->target) ? 0 : sph_derived_crossing(in);
   return broke ? (double)NAN : (sph_derived_arrival(in) + crossing) / r->outcome->time;
 }
 
 /* Energy of the overlap of bodies over the energy put in: they have not parted yet. */
-static double pressing(const struct condition_run *r) {
-  const struct sph_results *results = results_of(r);
-  return results->contact.energy / results->energy_input;
-}
+AFTER(pressing, results->contact.energy / results->energy_input)
 
 /* Pieces of bodies of which none cracks, over the number of bodies. */
 static double pieces(const struct condition_run *r) {
   const struct sph_inputs *in = r->inputs;
+  const struct sph_run *run = r->run;
   const bool fluid = !in->target.strength || (in->kind == SPH_COLLISION && !in->projectile.strength);
-  if (sph_derived_scene_cracks(in) || fluid || in->kind == SPH_PISTON || run_of(r)->has_gaps)
+  if (sph_derived_scene_cracks(in) || fluid || in->kind == SPH_PISTON || run->has_gaps)
     return NAN;
   return (double)r->outcome->fragment_count / (in->kind == SPH_COLLISION ? 2 : 1);
 }
 
 /* The elastic strain that would hold all the energy put in, of a target that cannot crack. */
-static double borne(const struct condition_run *r) {
-  const struct sph_inputs *in = r->inputs;
-  if (in->kind != SPH_IMPACT || sph_derived_cracks(&in->target))
-    return NAN;
-  return sqrt(2 * results_of(r)->energy_input / results_of(r)->target_mass) / sph_derived_wave_speed(&in->target);
-}
+AFTER(borne, ONLY(in->kind == SPH_IMPACT && !sph_derived_cracks(&in->target),
+                  sqrt(2 * results->energy_input / results->target_mass) / sph_derived_wave_speed(&in->target)))
 
 /* The strain at which the weakest flaw of the target opens. */
 static double weakest(const void *inputs) {
@@ -482,24 +386,15 @@ static double tilt(const void *inputs) {
 }
 
 /* The last stress over the largest one: near 1 the rod still bears its load. */
-static double unbroken(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  const size_t samples = run->state.frame.samples;
-  if (run->inputs.kind != SPH_STRETCH || samples == 0)
-    return NAN;
-  return run->sample[samples - 1].stress / run->state.peak_stress;
-}
+AFTER(unbroken, ONLY(in->kind == SPH_STRETCH && run->state.frame.samples > 0,
+                     run->sample[run->state.frame.samples - 1].stress / run->state.peak_stress))
 
 /* What the material of a rod without flaws bears, von Mises' stress or the tension limit of its pressure, over the peak
  * stress of a rod that failed. */
-static double clumped(const struct condition_run *r) {
-  const struct sph_inputs *in = r->inputs;
-  const struct sph_material *material = &in->target.material;
-  if (sph_derived_cracks(&in->target) || !(unbroken(r) < 0.9))
-    return NAN;
-  const double pressure = material->tension_limit.pressure, shear = material->yield.stress;
-  return fmin(fmin(shear, 3 * pressure), HUGE_VAL) / run_of(r)->state.peak_stress;
-}
+AFTER(clumped,
+      ONLY(!sph_derived_cracks(&in->target) && unbroken(r) < 0.9,
+           fmin(fmin(in->target.material.yield.stress, 3 * in->target.material.tension_limit.pressure), HUGE_VAL) /
+               run->state.peak_stress))
 
 static int by_number(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
@@ -521,18 +416,13 @@ static double place_of(const struct sph_run *run, int body, double share) {
 
 /* Distance of two bodies along their approach, without the 2 % of particles that are nearest to the other body, over
  * the reach of a pair. Below 1 they still act on each other, or have not met. */
-static double parted(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  if (run->inputs.kind != SPH_COLLISION)
-    return NAN;
-  if (results_of(r)->rebound < 0)
-    return 0;
-  return (place_of(run, 1, 0.02) - place_of(run, 0, 0.98)) / (2 * run->start->h[0]);
-}
+AFTER(parted,
+      ONLY(in->kind == SPH_COLLISION,
+           results->rebound < 0 ? 0 : (place_of(run, 1, 0.02) - place_of(run, 0, 0.98)) / (2 * run->start->h[0])))
 
 /* Depth of the crater over the spacing, where there is one: a hole, matter thrown out or matter pressed together. */
 static double shallow(const struct condition_run *r) {
-  const struct sph_results *results = results_of(r);
+  const struct sph_results *results = r->results;
   const double changed = fmax(fmax(results->ejecta.mass_fraction, results->palpha.compaction.volume),
                               results->crater.depth);
   return changed > 0 ? results->crater.depth / sph_derived_fine_spacing(r->inputs) : (double)NAN;
@@ -541,8 +431,8 @@ static double shallow(const struct condition_run *r) {
 /* The way that the floor of a crater, or a surface that closes its pores, would move in the simulated time once more,
  * as fast as now against the rest of the target; over the depth of the crater, one spacing at least. */
 static double growing(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  const struct sph_results *results = results_of(r);
+  const struct sph_run *run = r->run;
+  const struct sph_results *results = r->results;
   if (run->inputs.kind != SPH_IMPACT || !(fmax(results->crater.depth, results->palpha.compaction.volume) > 0))
     return NAN;
   enum { LAYERS = 3 };
@@ -564,9 +454,10 @@ static bool is_damaged(const struct sph_run *run, size_t i) {
 /* How far undamaged matter of the target has moved (root of the mean square), over the depth of the crater, which is
  * measured from the surface at the start. */
 static double moved(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
+  const struct sph_run *run = r->run;
   const struct sph_particles *start = run->start, *now = run->now;
-  const double depth = results_of(r)->crater.depth;
+  const struct sph_results *results = r->results;
+  const double depth = results->crater.depth;
   double sum = 0, mass = 0;
   for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
     if (is_damaged(run, i))
@@ -581,8 +472,8 @@ static double moved(const struct condition_run *r) {
 
 /* Depth of the crater over that of a box with damped sides, or its width over that of the box: the larger one. */
 static double wide(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  const struct sph_results *results = results_of(r);
+  const struct sph_run *run = r->run;
+  const struct sph_results *results = r->results;
   if (run->inputs.sides.far != SPH_FAR_DAMPED || !(results->crater.depth > 0))
     return NAN;
   double deep = 0, across = INFINITY; /* sides of the box along the impact, and the shorter one of the others */
@@ -595,10 +486,7 @@ static double wide(const struct condition_run *r) {
 }
 
 /* Mean damage of a target without damped sides. */
-static double gone(const struct condition_run *r) {
-  const struct sph_inputs *in = r->inputs;
-  return in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED ? results_of(r)->mean_damage : (double)NAN;
-}
+AFTER(gone, ONLY(in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED, results->mean_damage))
 
 /* Mass share of particles of the target for which `is` holds, of those for which `of` holds (NULL: all). */
 static double share_of(const struct sph_run *run, bool (*is)(const struct sph_run *run, size_t i),
@@ -626,14 +514,9 @@ static bool is_hot_and_whole(const struct sph_run *run, size_t i) {
          (run->now->energy[i] > most || run->now->density[i] < 0.5 * sph_material_bulk_density(material));
 }
 
-static double box(const struct condition_run *r) {
-  const struct sph_run *run = run_of(r);
-  return run->inputs.sides.far == SPH_FAR_DAMPED ? share_of(run, is_damaged, is_damped) : (double)NAN;
-}
+AFTER(box, ONLY(in->sides.far == SPH_FAR_DAMPED, share_of(run, is_damaged, is_damped)))
 
-static double hot(const struct condition_run *r) {
-  return run_of(r)->inputs.target.strength ? share_of(run_of(r), is_hot_and_whole, NULL) : (double)NAN;
-}
+AFTER(hot, ONLY(in->target.strength, share_of(run, is_hot_and_whole, NULL)))
 
 /* ---- inputs without effect ---- */
 
@@ -644,35 +527,25 @@ static bool is_given(const char *path, double value) {
 }
 
 /* An input of fracture of a scene that cannot crack. */
-static double no_fracture(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return !sph_derived_scene_cracks(in) && in->target.strength &&
-         (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE ||
-          is_given("fracture.growth", in->fracture.growth) || is_given("fracture.cap", in->fracture.cap) ||
-          is_given("fracture.crack_radius", in->fracture.crack_radius) || is_given("fracture.draw", in->weibull.draw) ||
-          is_given("fidelity.flaws", in->weibull.flaws) || is_given("stop.quiet_growth", in->stop.quiet_growth) ||
-          is_given("fidelity.damage_step", in->fracture.damage_step) ||
-          (!is_porous(&in->target) && (in->crack_surfaces.on || is_given("fragments.damage", in->fragments.damage))));
-}
+BEFORE(no_fracture,
+       !sph_derived_scene_cracks(in) && in->target.strength &&
+           (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE ||
+            is_given("fracture.growth", in->fracture.growth) || is_given("fracture.cap", in->fracture.cap) ||
+            is_given("fracture.crack_radius", in->fracture.crack_radius) ||
+            is_given("fracture.draw", in->weibull.draw) || is_given("fidelity.flaws", in->weibull.flaws) ||
+            is_given("stop.quiet_growth", in->stop.quiet_growth) ||
+            is_given("fidelity.damage_step", in->fracture.damage_step) ||
+            (!is_porous(&in->target) && (in->crack_surfaces.on || is_given("fragments.damage", in->fragments.damage)))))
 
-static double no_lattice(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_IMPACT && in->fidelity.graded && in->target.lattice == SPH_LATTICE_CUBIC;
-}
+BEFORE(no_lattice, in->kind == SPH_IMPACT && in->fidelity.graded && in->target.lattice == SPH_LATTICE_CUBIC)
 
-static double overruled(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_has_projectile(in) &&
-         in->fidelity.spacings_per_radius > 0 &&
-         fabs(in->fidelity.fine_spacing / sph_derived_asked_spacing(in) - 1) > 1e-9;
-}
+BEFORE(overruled, in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_has_projectile(in) &&
+                      in->fidelity.spacings_per_radius > 0 &&
+                      fabs(in->fidelity.fine_spacing / sph_derived_asked_spacing(in) - 1) > 1e-9)
 
 /* fidelity.coarsest bounds what fidelity.spacings_per_radius asks for. */
-static double bounds_nothing(const void *inputs) {
-  const struct sph_inputs *in = inputs;
-  return in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.coarsest > 0 &&
-         !(sph_derived_has_projectile(in) && in->fidelity.spacings_per_radius > 0);
-}
+BEFORE(bounds_nothing, in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.coarsest > 0 &&
+                           !(sph_derived_has_projectile(in) && in->fidelity.spacings_per_radius > 0))
 
 /* ---- materials ---- */
 
@@ -695,9 +568,7 @@ static const struct sph_body_inputs *worse(const struct sph_inputs *in,
   return sign * projectile > sign * target || isnan(target) ? &in->projectile : &in->target;
 }
 
-static double moduli(const void *inputs) {
-  return body_moduli(worse(inputs, body_moduli, 1));
-}
+BEFORE(moduli, body_moduli(worse(in, body_moduli, 1)))
 
 static void both_moduli(const void *inputs, double both[2]) {
   const struct sph_material *material = &worse(inputs, body_moduli, 1)->material;
@@ -705,17 +576,13 @@ static void both_moduli(const void *inputs, double both[2]) {
   both[1] = material->tillotson.A;
 }
 
-static double poisson(const void *inputs) {
-  return body_poisson(worse(inputs, body_poisson, -1));
-}
+BEFORE(poisson, body_poisson(worse(in, body_poisson, -1)))
 
 static double body_rubbery(const struct sph_body_inputs *body) {
   return sph_derived_cracks(body) ? body_poisson(body) : (double)NAN;
 }
 
-static double rubbery(const void *inputs) {
-  return body_rubbery(worse(inputs, body_rubbery, 1));
-}
+BEFORE(rubbery, body_rubbery(worse(in, body_rubbery, 1)))
 
 static void moduli_of(const struct sph_body_inputs *body, double both[2]) {
   both[0] = sph_material_bulk_modulus(&body->material);
@@ -746,9 +613,7 @@ static double body_crush(const struct sph_body_inputs *body) {
   return slopes(body, both) ? both[0] / both[1] : (double)NAN;
 }
 
-static double crush(const void *inputs) {
-  return body_crush(worse(inputs, body_crush, 1));
-}
+BEFORE(crush, body_crush(worse(in, body_crush, 1)))
 
 static void both_slopes(const void *inputs, double both[2]) {
   slopes(worse(inputs, body_crush, 1), both);
@@ -768,6 +633,10 @@ static void both_slopes(const void *inputs, double both[2]) {
 #define ALL_OF_A_BODY                                                                                                  \
   "largest_fraction second_fraction dust_fraction undamaged_fraction mean_damage largest.bare_fraction "               \
   "largest.veneer_fraction largest.dynamic_fraction"
+
+#define OF_THE_CRATER "crater.depth crater.radius crater.volume crater.compaction_share"
+
+#define OF_THE_EJECTA "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement"
 
 #define OF_THE_LARGEST                                                                                                 \
   "fragment_count single_count largest_fraction second_fraction mean_fragment_mass mean_fragment_mass_rest "           \
@@ -1028,9 +897,7 @@ const struct condition sph_conditions[] = {
     CONDITION("moved", .number = "the way that undamaged matter of the target has moved, over the crater's depth,",
               .bound = 0.2, .doubt = "the target has left the place from which the crater is measured",
               .reason = "our choice: the crater begins at the surface at the start",
-              .remedy = "give an earlier stop.end_time",
-              .results = "crater.depth crater.radius crater.volume crater.compaction_share", .withheld = true,
-              .after = moved),
+              .remedy = "give an earlier stop.end_time", .results = OF_THE_CRATER, .withheld = true, .after = moved),
     CONDITION("shapes", .number = "the number of fragments of 60 particles or more, besides the largest,", .bound = 5,
               .least = true, .doubt = "a mean over so few fragments says nothing of the shapes of all",
               .reason = "our choice: 135 fragments of basalt-sphere scatter by 0.17 in b/a and 0.09 in c/a, means of 5 "
@@ -1039,8 +906,8 @@ const struct condition sph_conditions[] = {
               .absent = true, .after = shaped),
     CONDITION("attached", .fact = "matter moves out of the target, which is in one piece",
               .doubt = "nothing has come off: a part of the body moves outwards", .reason = "a fragment that is one",
-              .remedy = "raise crater.ejection_speed, or give a longer stop.end_time",
-              .results = "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement", .after = attached),
+              .remedy = "raise crater.ejection_speed, or give a longer stop.end_time", .results = OF_THE_EJECTA,
+              .after = attached),
     CONDITION("tilt",
               .number =
                   "the speed at which the target's rotation moves its surface along the normal of the face that is "
@@ -1048,7 +915,7 @@ const struct condition sph_conditions[] = {
               .bound = 1, .doubt = "matter that only turns with the target counts as ejecta",
               .reason = "the axis of rotation is z, and the normal is another",
               .remedy = "raise crater.ejection_speed, or turn the mesh in its file until that face is level",
-              .results = "ejecta.mass_fraction ejecta.momentum ejecta.momentum_enhancement", .before = tilt),
+              .results = OF_THE_EJECTA, .before = tilt),
     CONDITION("flown",
               .number =
                   "the momentum that matter of the projectile keeps beyond that of the target, over all it brought,",
@@ -1058,14 +925,10 @@ const struct condition sph_conditions[] = {
               .results = "ejecta.momentum_enhancement", .withheld = true, .after = flown),
     CONDITION("wide", .number = "the larger of the crater's depth and width over those of the target", .bound = 0.5,
               .doubt = "the crater is as large as the box that stands for a half-space", .reason = "our choice",
-              .remedy = "take a larger target",
-              .results = "crater.depth crater.radius crater.volume crater.compaction_share", .withheld = true,
-              .after = wide),
+              .remedy = "take a larger target", .results = OF_THE_CRATER, .withheld = true, .after = wide),
     CONDITION("gone", .number = "the mean damage of the target", .bound = 0.9,
               .doubt = "no body is left that could have a crater", .reason = "our choice",
-              .remedy = "use the fragments",
-              .results = "crater.depth crater.radius crater.volume crater.compaction_share", .withheld = true,
-              .after = gone),
+              .remedy = "use the fragments", .results = OF_THE_CRATER, .withheld = true, .after = gone),
     CONDITION(
         "box", .number = "the damaged share of the damped sides", .bound = 0.01,
         .doubt =
