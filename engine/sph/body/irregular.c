@@ -47,40 +47,6 @@ static double wanted(const struct work *w, const double p[3]) {
   return w->lattice->grading.fine > 0 ? relax_spacing(&w->lattice->grading, p) : w->spacing;
 }
 
-/* Appends the neighbours of p, which is one periodic image of a point, to the list. */
-static bool append(struct work *w, const struct sph_kd_tree *tree, const double p[3], double radius, size_t *total) {
-  size_t found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->capacity - *total);
-  if (found > w->capacity - *total) {
-    const size_t capacity = w->capacity + w->capacity / 2 + found;
-    uint32_t *grown = realloc(w->list, capacity * sizeof *grown);
-    if (!grown)
-      return false;
-    w->list = grown;
-    w->capacity = capacity;
-    found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->capacity - *total);
-  }
-  *total += found;
-  return true;
-}
-
-static bool list_images(struct work *w, const struct sph_kd_tree *tree, size_t i, size_t *total) {
-  const double radius = (list_reach + list_skin) * w->s[i];
-  for (int image = 0; image < 27; image++) {
-    const int shift[3] = {(image + 1) % 3 - 1, (image / 3 + 1) % 3 - 1,
-                          (image / 9 + 1) % 3 - 1}; /* the first is the point itself */
-    double p[3];
-    bool near = true;
-    for (int k = 0; k < 3; k++) {
-      p[k] = w->at[i][k] + shift[k] * w->length[k];
-      if (shift[k])
-        near &= w->length[k] > 0 && p[k] > -radius && p[k] < w->length[k] + radius;
-    }
-    if (near && !append(w, tree, p, radius, total))
-      return false;
-  }
-  return true;
-}
-
 static status no_memory(size_t n, struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
 }
@@ -104,7 +70,8 @@ static status list(struct work *w, struct error *error) {
   size_t total = 0;
   for (size_t i = 0; i < w->n; i++) {
     w->first[i] = total;
-    if (!list_images(w, tree, i, &total))
+    if (!sph_kd_tree_list(tree, w->at[i], w->length, (list_reach + list_skin) * w->s[i], &w->list, &w->capacity,
+                          &total))
       return no_memory(w->n, error);
   }
   w->first[w->n] = total;

@@ -2,8 +2,9 @@
 #include "engine/sph/body/kd_tree.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
+
+#include "engine/grow.h"
 
 enum { LEAF = 8, DEEPEST = 64 };
 
@@ -196,4 +197,27 @@ size_t sph_kd_tree_within(const struct sph_kd_tree *t, const double p[3], double
     }
   }
   return count;
+}
+
+bool sph_kd_tree_list(const struct sph_kd_tree *t, const double point[3], const double length[3], double radius,
+                      uint32_t **list, size_t *capacity, size_t *total) {
+  for (int image = 0; image < 27; image++) { /* the first is the point itself */
+    const int shift[3] = {(image + 1) % 3 - 1, (image / 3 + 1) % 3 - 1, (image / 9 + 1) % 3 - 1};
+    double p[3];
+    bool near = true;
+    for (int k = 0; k < 3; k++) {
+      p[k] = point[k] + (shift[k] ? shift[k] * length[k] : 0);
+      near &= !shift[k] || (length[k] > 0 && p[k] > -radius && p[k] < length[k] + radius);
+    }
+    if (!near)
+      continue;
+    const size_t room = *capacity - *total, found = sph_kd_tree_within(t, p, radius, *list + *total, room);
+    if (found > room) {
+      if (!grow_room(list, capacity, *total + found, sizeof **list))
+        return false;
+      sph_kd_tree_within(t, p, radius, *list + *total, found);
+    }
+    *total += found;
+  }
+  return true;
 }

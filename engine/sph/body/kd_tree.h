@@ -1,6 +1,7 @@
 /* Finds the nearest of n points, by a k-d tree. Memory is proportional to n, however uneven the points are. */
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -21,6 +22,10 @@ size_t sph_kd_tree_other(const struct sph_kd_tree *nearest, const double point[3
  * sorted, but their order is always the same. */
 size_t sph_kd_tree_within(const struct sph_kd_tree *nearest, const double point[3], double radius, uint32_t *out,
                           size_t capacity);
+/* Appends the points within `radius` of a point, and then of its images in a box that is periodic where a length is
+ * above 0, to *list behind *total. The points lie in the box there. *list is malloc'd and grows. False: no memory. */
+bool sph_kd_tree_list(const struct sph_kd_tree *nearest, const double point[3], const double length[3], double radius,
+                      uint32_t **list, size_t *capacity, size_t *total);
 
 /* Sorts particles along Hilbert's curve: particles that are near in space are then near in memory, and consecutive
  * particles fill a compact region. Deterministic: ties are sorted by id. */

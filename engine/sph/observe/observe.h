@@ -128,8 +128,7 @@ struct sph_fragments {
 
 /* A particle whose position, velocity or h is not finite is a fragment of its own. In periodic directions a fragment is
  * measured from the images nearest to its first particle. A fragment that spans the box has no spin but about that
- * axis, and its centre along the axis has no meaning. STATUS_MEMORY; STATUS_CONTENT for options out of range or a body
- * without an entry. On failure *out is empty. */
+ * axis, and its centre along the axis has no meaning. STATUS_MEMORY. On failure *out is empty. */
 status sph_fragments_find(const struct sph_particles *particles, const struct sph_fragments_options *options,
                           struct sph_fragments *out, struct error *error);
 void sph_fragments_clear(struct sph_fragments *fragments);

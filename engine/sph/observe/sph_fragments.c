@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/grow.h"
 #include "engine/sph/body/kd_tree.h"
 #include "engine/sph/material/material.h"
 #include "schemas/memory.h"
@@ -139,48 +138,28 @@ struct places {
   uint32_t *id, *near; /* near: places that a search finds */
 };
 
-/* The places within `radius` of the k-th one or of its image, `image` boxes away. Returns their number. STATUS_MEMORY.
- */
-static status find_near(struct places *places, size_t k, const int image[3], const double periodic[3], double radius,
-                        size_t *found, struct error *error) {
-  double from[3];
-  *found = 0;
-  for (int d = 0; d < 3; d++) {
-    from[d] = places->at[d][k] + (image[d] ? image[d] * periodic[d] : 0);
-    if (image[d] && !(from[d] + radius >= 0 && from[d] - radius <= periodic[d]))
-      return STATUS_OK; /* it is out of reach, or the axis is open */
-  }
-  *found = sph_kd_tree_within(places->tree, from, radius, places->near, places->room);
-  if (*found <= places->room)
-    return STATUS_OK;
-  TRY(grow_or_fail(&places->near, &places->room, *found, sizeof *places->near, "the neighbours of a particle", error));
-  sph_kd_tree_within(places->tree, from, radius, places->near, places->room);
-  return STATUS_OK;
-}
-
 /* Visits the pairs of the k-th particle with particles of the same or a smaller h. */
 static status visit_around(struct search *s, struct places *places, size_t k, const double *h, double reach,
                            enum role other, pair_visitor visit, struct error *error) {
   const double *const x[] = {s->p->x, s->p->y, s->p->z}, *const periodic = s->options->periodic;
   const uint32_t i = places->id[k];
-  for (int number = 0; number < 27; number++) {
-    const int image[3] = {number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1};
-    size_t found; /* a rounded distance must not hide one */
-    TRY(find_near(places, k, image, periodic, reach * h[i] * (1 + 1e-9), &found, error));
-    for (size_t m = 0; m < found; m++) {
-      const uint32_t j = places->id[places->near[m]];
-      if (j == i || s->role[j] != other || h[j] > h[i])
-        continue;
-      double square = 0, within = 0.5 * reach * h[i] + 0.5 * reach * h[j];
-      for (int d = 0; d < 3; d++) {
-        double along = x[d][i] - x[d][j];
-        if (periodic[d] > 0)
-          along -= periodic[d] * nearbyint(along / periodic[d]);
-        square += along * along;
-      }
-      if (square <= within * within)
-        visit(s, i, j, square);
+  const double from[3] = {places->at[0][k], places->at[1][k], places->at[2][k]};
+  size_t found = 0; /* a rounded distance must not hide one */
+  if (!sph_kd_tree_list(places->tree, from, periodic, reach * h[i] * (1 + 1e-9), &places->near, &places->room, &found))
+    return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of a particle");
+  for (size_t m = 0; m < found; m++) {
+    const uint32_t j = places->id[places->near[m]];
+    if (j == i || s->role[j] != other || h[j] > h[i])
+      continue;
+    double square = 0, within = 0.5 * reach * h[i] + 0.5 * reach * h[j];
+    for (int d = 0; d < 3; d++) {
+      double along = x[d][i] - x[d][j];
+      if (periodic[d] > 0)
+        along -= periodic[d] * nearbyint(along / periodic[d]);
+      square += along * along;
     }
+    if (square <= within * within)
+      visit(s, i, j, square);
   }
   return STATUS_OK;
 }
@@ -367,21 +346,6 @@ static void sum_up(struct search *s) {
     out->fragments[f].first = s->particle[out->fragments[f].first];
 }
 
-static status check(const struct sph_particles *p, const struct sph_fragments_options *options, struct error *error) {
-  if (!(options->damage > 0 && options->damage <= 1))
-    return status_fail(error, STATUS_CONTENT, "fragments: damage is %g; give a threshold above 0 and at most 1",
-                       options->damage);
-  if (!(options->link_length > 0 && options->link_length <= 4))
-    return status_fail(error, STATUS_CONTENT, "fragments: the link length is %g h; give one above 0 and at most 4 h",
-                       options->link_length);
-  for (size_t i = 0; options->bodies && i < p->n; i++)
-    if (p->body[i] >= options->body_count)
-      return status_fail(error, STATUS_CONTENT,
-                         "fragments: particle %zu is of body %d, but only %zu bodies are described", i, p->body[i],
-                         options->body_count);
-  return STATUS_OK;
-}
-
 static status find(struct search *s, struct error *error) {
   const size_t n = s->p->n + 1;
   OWNED uint8_t *role = s->role = malloc(n);
@@ -413,9 +377,7 @@ status sph_fragments_find(const struct sph_particles *p, const struct sph_fragme
                           struct sph_fragments *out, struct error *error) {
   *out = (struct sph_fragments){.n = p->n, .axis_ratio = {NAN, NAN}};
   struct search search = {.p = p, .options = options, .out = out};
-  status code = check(p, options, error);
-  if (!code)
-    code = find(&search, error);
+  const status code = find(&search, error);
   if (code)
     sph_fragments_clear(out);
   return code;
