@@ -81,9 +81,10 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error);
 
 /* describe.c */
 char *sph_describe_scene(const void *inputs, bool all);
-size_t sph_describe_memory(const void *inputs); /* bytes a run will need */
-double sph_describe_steps(const void *inputs);  /* to stop.end_time, an estimate */
-double sph_describe_work(const void *inputs);   /* particle-steps, an estimate */
+struct sph_column_set sph_describe_columns(const struct sph_inputs *inputs); /* that its system will have */
+size_t sph_describe_memory(const void *inputs);                              /* bytes a run will need */
+double sph_describe_steps(const void *inputs);                               /* to stop.end_time, an estimate */
+double sph_describe_work(const void *inputs);                                /* particle-steps, an estimate */
 
 /* conditions.c */
 extern const struct condition sph_conditions[]; /* engine_kind.conditions */

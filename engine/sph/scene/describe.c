@@ -57,6 +57,10 @@ static struct need need_of(const struct sph_inputs *in) {
   return need;
 }
 
+struct sph_column_set sph_describe_columns(const struct sph_inputs *in) {
+  return need_of(in).columns;
+}
+
 size_t sph_describe_memory(const void *inputs) {
   const struct sph_inputs *in = inputs;
   const struct need need = need_of(in);

@@ -57,16 +57,7 @@ static void place_plate(struct sph_run *run) {
 
 /* The arrays that the modules of the bodies need, and those of the protocol. */
 static int arrays_of(const struct sph_inputs *in) {
-  static const struct sph_flaws some = {.particles = 1};
-  struct sph_column_set columns = {0};
-  const struct sph_body_inputs *bodies[] = {&in->target, &in->projectile};
-  for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
-    const struct sph_body_physics physics = sph_derived_physics(bodies[b],
-                                                                sph_derived_cracks(bodies[b]) ? &some : NULL);
-    const struct sph_module_set modules = sph_modules_of(&physics, in);
-    const struct sph_column_set own = sph_modules_columns(&modules, &physics);
-    set_unite(columns.word, own.word, SPH_COLUMNS);
-  }
+  const struct sph_column_set columns = sph_describe_columns(in);
   int arrays = sph_system_columns_arrays(&columns);
   if (in->kind == SPH_STRETCH || in->kind == SPH_PISTON)
     arrays |= SPH_WITH_HELD;
