@@ -157,32 +157,19 @@ static void projectiles_are_aimed(void **state) {
           if (g)
             assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
         }
-  struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
-  double flight[3];
-  struct error error;
-  assert_int_equal(sph_bodies_aim(&targets[0], &shot, (double[3]){0, 0, 0}, 0, 0, flight, &error), STATUS_CONTENT);
-  assert_int_equal(sph_bodies_aim(&targets[0], &shot, directions[0], 1.5708, 0, flight, &error), STATUS_CONTENT);
-  assert_int_equal(sph_bodies_aim(&targets[0], &shot, directions[0], NAN, 0, flight, &error), STATUS_CONTENT);
-  assert_int_equal(sph_bodies_aim(&targets[0], &shot, directions[0], 0, -1e-9, flight, &error), STATUS_CONTENT);
 }
 
-static void overlaps_are_refused_by_name(void **state) {
+static void overlaps_are_refused(void **state) {
   (void)state;
-  struct sph_body bodies[3] = {sphere(0.03, 500, 2700), sphere(0.003, 20, 1185), sphere(0.01, 20, 1000)};
+  struct sph_body bodies[2] = {sphere(0.03, 500, 2700), sphere(0.003, 20, 1185)};
   bodies[1].shape.centre[2] = 0.0325; /* 0.5 mm too near */
-  bodies[2].shape.centre[0] = -0.04;
   struct sph_particles *p = NULL;
   struct error error = {0};
-  assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_CONTENT);
+  assert_int_equal(sph_bodies_make(bodies, 2, 0, &p, NULL, &error), STATUS_CONTENT);
   assert_null(p);
-  assert_string_equal(error.message,
-                      "the target and the projectile overlap by 0.0005 m: move one of them, or give a gap.");
+  assert_string_equal(error.message, "the target and the projectile overlap by 0.0005 m");
   bodies[1].shape.centre[2] = 0.033; /* they touch */
-  bodies[2].shape.centre[0] = -0.0399;
-  assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_CONTENT);
-  assert_string_equal(error.message, "the target and body 002 overlap by 0.0001 m: move one of them, or give a gap.");
-  bodies[2].shape.centre[0] = -0.04;
-  assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_OK);
+  assert_int_equal(sph_bodies_make(bodies, 2, 0, &p, NULL, &error), STATUS_OK);
   sph_particles_free(p);
 }
 
@@ -251,18 +238,6 @@ static void absurd_bodies_are_refused(void **state) {
   assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_MEMORY);
   assert_non_null(strstr(error.message, "1e+12 particles"));
   assert_null(p);
-  const double bad[] = {0, -1, NAN, HUGE_VAL};
-  for (int k = 0; k < 4; k++) {
-    body = sphere(1, 10, bad[k]);
-    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_CONTENT);
-    body = sphere(bad[k], 10, 1);
-    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_CONTENT);
-    body = sphere(1, 10, 1);
-    body.h_over_spacing = bad[k];
-    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), isnan(bad[k]) ? STATUS_OK : STATUS_CONTENT);
-    sph_particles_free(p);
-  }
-  assert_int_equal(sph_bodies_make(&body, 0, 0, &p, NULL, &error), STATUS_CONTENT);
   assert_int_equal(sph_particles_make((size_t)1e13, 0, &p, &error), STATUS_MEMORY);
   assert_null(p);
   /* from grains of dust to moons */
@@ -283,7 +258,7 @@ int main(void) {
       cmocka_unit_test(one_particle_is_a_body),
       cmocka_unit_test(the_same_bits_each_time),
       cmocka_unit_test(projectiles_are_aimed),
-      cmocka_unit_test(overlaps_are_refused_by_name),
+      cmocka_unit_test(overlaps_are_refused),
       cmocka_unit_test(bodies_move),
       cmocka_unit_test(ends_are_held_and_sides_damped),
       cmocka_unit_test(absurd_bodies_are_refused),

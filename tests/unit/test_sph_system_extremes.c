@@ -154,21 +154,6 @@ static void refused(void **state) {
                    STATUS_CONTENT);
   assert_non_null(strstr(error.message, "particle 40"));
   c.particles->density[40] = 2700;
-  c.parameters.in.fidelity.cfl = 0;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
-                   STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "cfl"));
-  c.parameters.in.fidelity.cfl = 0.3;
-  c.parameters.domain.periodic[1] = 0;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
-                   STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "along y"));
-  c.parameters.domain.periodic[1] = NAN;
-  c.parameters.in.fidelity.threads = 0;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
-                   STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "threads"));
-  c.parameters.in.fidelity.threads = 1;
   c.particles->body[3] = 1; /* then body 0 again: out of order */
   assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
                    STATUS_CONTENT);

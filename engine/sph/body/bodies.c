@@ -2,7 +2,6 @@
 #include "engine/sph/body/bodies.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,44 +15,12 @@ static double unit(const double a[3], double out[3]) {
   return length;
 }
 
-static const char *name(size_t body, char text[32]) { /* names of bodies as in scenes */
-  if (body < 2)
-    return body ? "the projectile" : "the target";
-  snprintf(text, 32, "body %03zu", body);
-  return text;
-}
-
-static status check_body(const struct sph_body *body, struct error *error) {
-  TRY(sph_shape_check(&body->shape, error));
-  if (!(body->density > 0 && isfinite(body->density)))
-    return status_fail(error, STATUS_CONTENT, "the density of a body is %g kg/m^3: give a positive one.",
-                       body->density);
-  if (body->h_over_spacing <= 0 || isinf(body->h_over_spacing))
-    return status_fail(error, STATUS_CONTENT, "h over spacing is %g: give a positive number (%g is usual).",
-                       body->h_over_spacing, SPH_BODIES_H);
-  return STATUS_OK;
-}
-
 /* Bodies may touch; rounding is allowed for. */
-static status check_overlap(const struct sph_body *bodies, size_t a, size_t b, struct error *error) {
-  char text[2][32];
-  const double gap = sph_shape_gap(&bodies[a].shape, &bodies[b].shape);
-  const double size = cbrt(fmin(sph_shape_volume(&bodies[a].shape), sph_shape_volume(&bodies[b].shape)));
-  if (gap < -1e-9 * size)
-    return status_fail(error, STATUS_CONTENT, "%s and %s overlap by %.4g m: move one of them, or give a gap.",
-                       name(a, text[0]), name(b, text[1]), -gap);
-  return STATUS_OK;
-}
-
-static status check(const struct sph_body *bodies, size_t count, struct error *error) {
-  if (!count || count > 255)
-    return status_fail(error, STATUS_CONTENT, "%zu bodies: give 1 to 255.", count);
-  for (size_t b = 0; b < count; b++)
-    TRY(check_body(&bodies[b], error));
-  for (size_t b = 0; b < count; b++)
-    for (size_t a = 0; a < b; a++)
-      TRY(check_overlap(bodies, a, b, error));
-  return STATUS_OK;
+static status check_overlap(const struct sph_shape *a, const struct sph_shape *b, struct error *error) {
+  const double gap = sph_shape_gap(a, b), size = cbrt(fmin(sph_shape_volume(a), sph_shape_volume(b)));
+  return gap < -1e-9 * size
+             ? status_fail(error, STATUS_CONTENT, "the target and the projectile overlap by %.4g m", -gap)
+             : STATUS_OK;
 }
 
 /* The particles of body b, at its points and from the index `first` on. */
@@ -79,7 +46,8 @@ static struct sph_range fill(const struct sph_body *body, size_t b, const struct
 status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, struct sph_particles **out,
                        struct sph_range *ranges, struct error *error) {
   *out = NULL;
-  TRY(check(bodies, count, error));
+  for (size_t b = 1; b < count; b++)
+    TRY(check_overlap(&bodies[b - 1].shape, &bodies[b].shape, error));
   OWNED struct sph_points *points = memory_small(count, sizeof *points);
   status code = STATUS_OK;
   size_t n = 0, first = 0;
@@ -116,13 +84,7 @@ bool sph_bodies_face(const struct sph_shape *target, const double direction[3], 
 status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
                       double angle, double gap, double flight[3], struct error *error) {
   double outwards[3], point[3], frame[3][3];
-  if (!(unit(direction, outwards) > 0) || !isfinite(vector3_dot(direction, direction)))
-    return status_fail(error, STATUS_CONTENT, "the place of impact has no direction from the target's centre.");
-  if (!(gap >= 0 && isfinite(gap)))
-    return status_fail(error, STATUS_CONTENT, "the gap before the impact is %g m: give 0 or more.", gap);
-  if (!(angle >= 0 && angle < M_PI_2))
-    return status_fail(error, STATUS_CONTENT, "the impact comes %g degrees from the normal: give 0 to below 90.",
-                       angle * 180 / M_PI);
+  unit(direction, outwards);
   if (!sph_bodies_face(target, outwards, point, frame))
     return status_fail(error, STATUS_CONTENT,
                        "no point of impact: the line from the target's centre of mass upwards (z) does not meet the "

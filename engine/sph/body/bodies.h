@@ -34,8 +34,7 @@ struct sph_shape {
   double unit;             /* m: mesh, one unit of its file */
 };
 
-/* STATUS_CONTENT: a size is not positive and finite, a hole is as wide as its cylinder, or an axis has no length. */
-status sph_shape_check(const struct sph_shape *shape, struct error *error);
+/* Sizes are positive and finite, a hole is narrower than its cylinder, and an axis has a length. */
 double sph_shape_volume(const struct sph_shape *shape); /* m^3 */
 /* m: the shortest way through its middle between two faces, of a ring through the wall, of a mesh across its box */
 double sph_shape_thinnest(const struct sph_shape *shape);
@@ -57,9 +56,10 @@ bool sph_shape_surface(const struct sph_shape *shape, const double direction[3],
  * around it. False: the point is outside of the mesh; draw again. */
 bool sph_shape_place(const struct sph_shape *shape, const double uniform[3], double point[3]);
 double sph_shape_mesh_area(const struct sph_shape *shape); /* m^2, of a mesh */
-/* The distance of two shapes, m; negative: the depth of their overlap. Rings count as their hulls. Exact when one is a
- * sphere, else to about 1e-6 of their size. Of two meshes, or of a mesh and a box or cylinder, the depth is that of the
- * deepest place found, and a gap may be too large where both are concave. */
+/* The distance of two shapes, m; negative: they overlap. Rings count as their hulls. Exact when one is a sphere, else
+ * to about 1e-6 of their size; so is the depth of an overlap with a sphere. Of a mesh and another shape it is that of
+ * the deepest place found, and a gap may be too large where both are concave; of boxes and cylinders it is just below
+ * 0. */
 double sph_shape_gap(const struct sph_shape *a, const struct sph_shape *b);
 /* The smallest gap (m) from now on while b moves past a with the relative velocity of b (m/s), and its time (s) in
  * *when (NULL is fine). */
@@ -119,8 +119,9 @@ struct sph_points {
   double stretch; /* largest spacing of a direction over the ideal one; 1: not stretched */
 };
 
-/* STATUS_CONTENT: no particles, a shape too thin for its particles, or impossible sizes; STATUS_MEMORY, with the
- * number, before anything is allocated. On failure *points is empty. */
+/* STATUS_CONTENT: a shape too thin for its particles; STATUS_MEMORY, with the number, before anything is allocated. On
+ * failure *points is empty. Only boxes, and cylinders along their axis, can be periodic, of lattices that are neither
+ * turned nor graded. */
 status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
                         struct error *error);
 void sph_lattice_empty(struct sph_points *points); /* frees the arrays in `points` */
@@ -182,8 +183,7 @@ bool sph_bodies_face(const struct sph_shape *target, const double direction[3], 
 
 /* Puts the projectile in front of the target. The point of impact is that of sph_bodies_face; the
  * projectile's surface is `gap` (m) away from it. `flight` becomes the unit vector of its motion: `angle` (rad) from
- * the inward normal, turned towards frame[0]. STATUS_CONTENT: no direction, a negative gap, or an angle outside of [0,
- * pi/2). */
+ * the inward normal, turned towards frame[0], below pi/2. STATUS_CONTENT: no point of impact. */
 status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
                       double angle, double gap, double flight[3], struct error *error);
 

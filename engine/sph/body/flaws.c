@@ -273,9 +273,6 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   struct sph_flaw_law full = *law;
   OWNED struct sph_cells *cells = NULL; /* the owners of flaws; NULL: particles */
   OWNED struct sph_kd_tree *nearest = NULL;
-  TRY(sph_shape_check(shape, error));
-  if (!range.n)
-    return status_fail(error, STATUS_CONTENT, "a body of no particles has no flaws.");
   if (law->cell_width > 0)
     TRY(sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &cells, error));
   const bool unequal = cells || is_graded(p, range);

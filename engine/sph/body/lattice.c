@@ -380,52 +380,12 @@ static status fill_box(const struct sph_lattice *lattice, const struct sph_latti
 
 /* ---- any lattice ---- */
 
-/* What cannot repeat in any direction; NULL: it can. */
-static const char *not_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape) {
-  if (lattice->grading.fine > 0)
-    return "a graded body";
-  if (lattice->turned)
-    return "a turned lattice";
-  switch (shape->kind) {
-  case SPH_SHAPE_SPHERE: return "a sphere";
-  case SPH_SHAPE_MESH: return "a mesh";
-  default: return NULL;
-  }
-}
-
-static status check_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape, int k,
-                             struct error *error) {
-  const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit), *axis = shape->axis;
-  const char name = "xyz"[k];
-  const char *what = not_periodic(lattice, shape);
-  if (what)
-    return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.", what,
-                       name);
-  if (shape->kind == SPH_SHAPE_CYLINDER && (axis[(k + 1) % 3] != 0 || axis[(k + 2) % 3] != 0))
-    return status_fail(error, STATUS_CONTENT, "a cylinder can repeat along its axis only, not along %c.", name);
-  if (fabs(shape->centre[k] - half) > 1e-9 * half)
-    return status_fail(error, STATUS_CONTENT,
-                       "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.", name,
-                       half, shape->centre[k]);
-  return STATUS_OK;
-}
-
 /* The number of particles of a body without grading. */
 static status decide(const struct sph_lattice *lattice, double volume, double *wanted, struct error *error) {
   const double s = lattice->spacing, bytes = lattice->kind == SPH_LATTICE_IRREGULAR ? 640 : 160;
   *wanted = lattice->particles;
-  if (isnan(*wanted)) {
-    if (!(s > 0 && isfinite(s)))
-      return status_fail(error, STATUS_CONTENT,
-                         "the spacing of particles is %g m: give a positive length, or a number.", s);
+  if (isnan(*wanted))
     *wanted = volume / s / s / s;
-    if (!(*wanted >= 0.5))
-      return status_fail(error, STATUS_CONTENT,
-                         "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.", s,
-                         volume);
-  }
-  if (!(*wanted >= 0.5))
-    return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
   if (!(*wanted * bytes < (double)sph_particles_memory()) || *wanted > 4e9)
     return status_fail(
         error, STATUS_MEMORY,
@@ -439,12 +399,8 @@ static status fill(const struct sph_lattice *lattice, const struct sph_shape *sh
                    struct error *error) {
   const bool graded = lattice->grading.fine > 0;
   double wanted = 0;
-  TRY(sph_shape_check(shape, error));
   if (!graded)
     TRY(decide(lattice, sph_shape_volume(shape), &wanted, error));
-  for (int k = 0; k < 3; k++)
-    if (lattice->periodic[k])
-      TRY(check_periodic(lattice, shape, k, error));
   if (lattice->kind == SPH_LATTICE_IRREGULAR || graded)
     return sph_irregular_fill(lattice, shape, wanted, points, error);
 

@@ -3,6 +3,7 @@
  */
 #include "engine/sph/body/bodies.h"
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -14,15 +15,6 @@
 
 static double mesh_shape_volume(const struct sph_shape *s) {
   return s->mesh ? s->mesh->volume * s->unit * s->unit * s->unit : (double)NAN;
-}
-
-static status mesh_shape_check(const struct sph_shape *s, struct error *error) {
-  if (!s->mesh)
-    return status_fail(error, STATUS_CONTENT, "a mesh without its shape file: name the file in the scene.");
-  if (!(s->unit > 0) || !isnormal(mesh_shape_volume(s)))
-    return status_fail(error, STATUS_CONTENT, "a unit of the shape file is %g m, which makes %g m^3 of the body.",
-                       s->unit, mesh_shape_volume(s));
-  return STATUS_OK;
 }
 
 double sph_shape_mesh_area(const struct sph_shape *s) {
@@ -126,45 +118,6 @@ static double mesh_shape_gap(const struct sph_shape *s, const struct sph_shape *
   if (gap > 0 && sph_shape_surface(other, up, point, normal))
     gap = fmin(gap, fmax(-sph_shape_reach(other, up), sph_shape_distance(s, point, NULL)));
   return gap;
-}
-
-static status positive(double value, const char *name, struct error *error) {
-  if (value > 0 && isfinite(value) && isnormal(value * value * value))
-    return STATUS_OK;
-  return status_fail(error, STATUS_CONTENT, "%s is %g m: give a positive length.", name, value);
-}
-
-static status check_cylinder(const struct sph_shape *s, struct error *error) {
-  double ignored[3];
-  TRY(positive(s->radius, "the radius of a cylinder", error));
-  TRY(positive(s->length, "the length of a cylinder", error));
-  if (!(s->inner_radius >= 0 && s->inner_radius < s->radius))
-    return status_fail(error, STATUS_CONTENT,
-                       "the hole of a cylinder has radius %g m: give 0 to below its radius, %g m.", s->inner_radius,
-                       s->radius);
-  if (!(vector3_unit(s->axis, ignored) > 0))
-    return status_fail(error, STATUS_CONTENT, "the axis of a cylinder has no direction.");
-  return STATUS_OK;
-}
-
-static status check_box(const struct sph_shape *s, struct error *error) {
-  static const char *const name[3] = {"side x of a box", "side y of a box", "side z of a box"};
-  for (int k = 0; k < 3; k++)
-    TRY(positive(s->side[k], name[k], error));
-  return STATUS_OK;
-}
-
-status sph_shape_check(const struct sph_shape *s, struct error *error) {
-  for (int k = 0; k < 3; k++)
-    if (!isfinite(s->centre[k]))
-      return status_fail(error, STATUS_CONTENT, "the centre of a body is not finite.");
-  switch (s->kind) {
-  case SPH_SHAPE_SPHERE: return positive(s->radius, "the radius of a sphere", error);
-  case SPH_SHAPE_CYLINDER: return check_cylinder(s, error);
-  case SPH_SHAPE_BOX: return check_box(s, error);
-  case SPH_SHAPE_MESH: return mesh_shape_check(s, error);
-  default: return status_fail(error, STATUS_INTERNAL, "shape %d is unknown", s->kind);
-  }
 }
 
 double sph_shape_volume(const struct sph_shape *s) {
@@ -450,81 +403,8 @@ static struct sph_shape hull(const struct sph_shape *s) {
   return h;
 }
 
-enum { DIRECTIONS = 64 };
-
-/* Directions that may separate two hulls, of any length: those of faces and edges, of the centres (d), and a cover of
- * the sphere. */
-static void directions(const struct sph_shape *a, const struct sph_shape *b, const double d[3],
-                       double try[DIRECTIONS][3]) {
-  double fa[3][3], fb[3][3];
-  sph_shape_frame(a, fa);
-  sph_shape_frame(b, fb);
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) {
-      try[i][k] = fa[k][i];
-      try[3 + i][k] = fb[k][i];
-    }
-  int count = 6;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++, count++)
-      vector3_cross(try[i], try[3 + j], try[count]);
-  memcpy(try[count++], d, sizeof try[0]);
-  for (int i = 0; count < DIRECTIONS; i++, count++) { /* an even cover of half the sphere */
-    const double z = (i + 0.5) / 48, across = sqrt(1 - z * z), turn = 2.399963229728653 * i;
-    try[count][0] = across * cos(turn);
-    try[count][1] = across * sin(turn);
-    try[count][2] = z;
-  }
-}
-
-/* Two hulls, and the direction that separates them best so far. */
-struct separation {
-  const struct sph_shape *a, *b;
-  double between[3]; /* m, of their centres */
-  double direction[3], distance;
-};
-
-/* Takes the direction of `towards`, which is longer than `least`, if it separates the hulls better. */
-static bool improve(struct separation *s, const double towards[3], double least) {
-  double v[3];
-  if (!(vector3_unit(towards, v) > least))
-    return false;
-  const double distance = fabs(vector3_dot(v, s->between)) - sph_shape_reach(s->a, v) - sph_shape_reach(s->b, v);
-  if (!(distance > s->distance))
-    return false;
-  s->distance = distance;
-  memcpy(s->direction, v, sizeof v);
-  return true;
-}
-
-/* Tries to turn the direction a little, both ways about each axis. */
-static bool turn(struct separation *s, double step) {
-  for (int side = 0; side < 6; side++) {
-    double w[3];
-    memcpy(w, s->direction, sizeof w);
-    w[side / 2] += side % 2 ? step : -step;
-    if (improve(s, w, 0))
-      return true;
-  }
-  return false;
-}
-
-/* The depth of overlap, negative, is the least push along any direction that separates two hulls. Tries some
- * directions, then searches about the best. */
-static double depth(const struct sph_shape *a, const struct sph_shape *b) {
-  struct separation s = {.a = a, .b = b, .direction = {0, 0, 1}, .distance = -INFINITY};
-  double try[DIRECTIONS][3];
-  vector3_subtract(b->centre, a->centre, s.between);
-  directions(a, b, s.between, try);
-  for (int i = 0; i < DIRECTIONS; i++)
-    improve(&s, try[i], 1e-9);
-  for (double step = 0.3; step > 1e-7;)
-    if (!turn(&s, step))
-      step *= 0.5;
-  return s.distance;
-}
-
-/* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points. */
+/* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points, or at a point
+ * of both. */
 static double convex_gap(const struct sph_shape *a, const struct sph_shape *b) {
   double p[3], normal[3], gap = INFINITY;
   memcpy(p, b->centre, sizeof p);
@@ -537,7 +417,7 @@ static double convex_gap(const struct sph_shape *a, const struct sph_shape *b) {
         p[k] -= gap * normal[k];
     }
     if (gap <= 1e-9 * size)
-      return fmin(depth(a, b), 0);
+      return -DBL_MIN;
     if (before - gap < 1e-12 * size && round)
       break;
   }

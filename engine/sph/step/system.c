@@ -184,8 +184,8 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
 }
 
 /* Builds a moving system from particles at rest on their lattices: bodies with their modules and hooks, columns,
- * blocks. Bodies and inputs that a system cannot compute are refused first, with a message that names the body, the
- * particle or the input. */
+ * blocks. Bodies that a system cannot compute are refused first, with a message that names the body or the particle.
+ */
 
 /* ---- checks ---- */
 
@@ -201,50 +201,6 @@ static status check_body(size_t index, const struct sph_body_physics *b, const s
     if (code)
       return status_fail(error, code, "body %zu: %.3000s", index, why.message);
   }
-  return STATUS_OK;
-}
-
-/* Does the row describe a member of one of the sections that a system reads? */
-static bool is_read(const struct field *row) {
-  const struct {
-    size_t offset, size;
-  } section[] = {
-#define SECTION(member_) {offsetof(struct sph_inputs, member_), sizeof(((struct sph_inputs *)0)->member_)}
-      SECTION(viscosity), SECTION(method), SECTION(fracture), SECTION(fidelity)};
-  for (size_t k = 0; k < sizeof section / sizeof *section; k++)
-    if (row->offset >= section[k].offset && row->offset - section[k].offset < section[k].size)
-      return true;
-  return false;
-}
-
-/* Inputs lie within the ranges of their rows. Derived inputs may still be missing; the system reads none of them. */
-static status check_inputs(const struct sph_inputs *inputs, struct error *error) {
-  for (size_t k = 0; k < sph_inputs.count; k++) {
-    const struct field *row = &sph_inputs.rows[k];
-    struct field_value value, unused;
-    if (!is_read(row))
-      continue;
-    field_get(row, inputs, &value);
-    if (row->flags & FIELD_DERIVED && value.kind == FIELD_REAL && isnan(value.number))
-      continue;
-    TRY(field_set_value(row, &value, &unused, error));
-  }
-  return STATUS_OK;
-}
-
-static status check_domain(const struct sph_domain *domain, struct error *error) {
-  for (int k = 0; k < 3; k++)
-    if (domain->periodic[k] <= 0 || isinf(domain->periodic[k]))
-      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c; give a positive length",
-                         domain->periodic[k], "xyz"[k]);
-  if (!(domain->spacing_over_h > 0) || isinf(domain->spacing_over_h))
-    return status_fail(error, STATUS_CONTENT, "the spacing over h is %g; it must be above 0", domain->spacing_over_h);
-  if (domain->largest_time_step <= 0) /* NaN: off */
-    return status_fail(error, STATUS_CONTENT, "the largest time step is %g s; it must be above 0",
-                       domain->largest_time_step);
-  if (!(domain->lowest_density > 0 && domain->lowest_density <= 1))
-    return status_fail(error, STATUS_CONTENT, "the lowest density is %g of the first; it must be above 0, at most 1",
-                       domain->lowest_density);
   return STATUS_OK;
 }
 
@@ -273,31 +229,9 @@ static status check_particles(const struct sph_particles *p, size_t body_count, 
   return STATUS_OK;
 }
 
-/* Refused before anything is allocated. */
-static status check_memory(const struct sph_particles *p, size_t body_count, const struct sph_body_physics *bodies,
-                           const struct sph_inputs *inputs, struct error *error) {
-  struct sph_column_set columns = sph_system_columns_of_all(p->damping != NULL);
-  size_t pairs = 0;
-  for (size_t b = 0; b < body_count; b++) {
-    const struct sph_module_set modules = sph_modules_of(&bodies[b], inputs);
-    const struct sph_column_set own = sph_modules_columns(&modules, &bodies[b]);
-    set_unite(columns.word, own.word, SPH_COLUMNS);
-    pairs = sph_modules_bytes_in_pairs(&modules); /* options of the pair loop: the same for all bodies */
-  }
-  const double bytes = (double)p->n * sph_system_columns_bytes(&columns, pairs, &inputs->fidelity);
-  const double there = (double)sph_particles_memory();
-  if (bytes > there)
-    return status_fail(error, STATUS_MEMORY,
-                       "%zu particles need about %.3g GB; this machine, or the limit set, has %.3g GB", p->n,
-                       bytes / 1e9, there / 1e9);
-  return STATUS_OK;
-}
-
-/* Everything that is refused: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
+/* Everything that is refused. */
 static status check_all(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
-                        const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error) {
-  TRY(check_inputs(inputs, error));
-  TRY(check_domain(domain, error));
+                        const struct sph_inputs *inputs, struct error *error) {
   TRY(check_particles(particles, body_count, error));
 
   size_t first = 0;
@@ -308,7 +242,7 @@ static status check_all(const struct sph_particles *particles, size_t body_count
     TRY(check_body(b, &bodies[b], particles, first, last, inputs, error));
     first = last;
   }
-  return check_memory(particles, body_count, bodies, inputs, error);
+  return STATUS_OK;
 }
 
 /* ---- bodies ---- */
@@ -472,7 +406,7 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
                          const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
                          const struct sph_domain *domain, struct sph_system **out, struct error *error) {
   *out = NULL;
-  TRY(check_all(particles, body_count, bodies, inputs, domain, error));
+  TRY(check_all(particles, body_count, bodies, inputs, error));
   struct sph_solid *solid = calloc(body_count, sizeof *solid);
   if (!solid)
     return status_fail(error, STATUS_MEMORY, "no memory for a system");

@@ -48,9 +48,8 @@ struct sph_ledger {
 struct sph_system; /* below */
 
 /* All arguments are copied. Of the inputs a system reads viscosity, method, fracture and fidelity, and its modules what
- * they need. Periodic directions run from 0 to their length. STATUS_MEMORY, before anything is allocated when it would
- * not fit; STATUS_CONTENT when an input is out of its range, or when a body lacks a material value that its physics
- * needs (named). */
+ * they need. Periodic directions run from 0 to their length. STATUS_MEMORY; STATUS_CONTENT when a body lacks a
+ * material value that its physics needs (named). */
 status sph_system_create(const struct sph_particles *particles, size_t body_count,
                          const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
                          const struct sph_domain *domain, struct sph_system **out, struct error *error);
