@@ -61,10 +61,10 @@ struct field {
   int main_rank; /* results only: place among the main results, from 1; 0: not a main result. Old stores keep the CHECK
                   * and the index of table run that they were made with: an upgrade in db/store/store.c could renew
                   * them */
-  /* A nest: the rows of another table in place of this row, until field_table_build() puts them there. Its path comes
-   * before theirs (NULL: nothing does), its offset is added to theirs, and its flags to theirs. FIELD_DERIVED takes the
-   * place of their FIELD_REQUIRED. `when` is for those of them that have none. `doc` follows their docs, `choice_docs`
-   * those of choices, where it is given. Kind, unit, range and default are not used. */
+  /* A nest: the rows of another table in place of this row, until FIELD_TABLE_AT_START() puts them there. Its path
+   * comes before theirs (NULL: nothing does), its offset is added to theirs, and its flags to theirs. FIELD_DERIVED
+   * takes the place of their FIELD_REQUIRED. `when` is for those of them that have none. `doc` follows their docs,
+   * `choice_docs` those of choices, where it is given. Kind, unit, range and default are not used. */
   const struct field_table *nest;
   const char *only;        /* "NAME": only the rows of this section; "!NAME": all others; NULL: all */
   const struct field *own; /* rows ended by one without a path: their default, and `text`, `when` and `doc` where given,
@@ -83,13 +83,9 @@ struct field_table {
 #define FIELD_TABLE(rows_, type_, name_, ...)                                                                          \
   { .rows = rows_, .count = sizeof rows_ / sizeof rows_[0], .size = sizeof(type_), .name = name_, .doc = __VA_ARGS__ }
 
-/* Builds a flat table from one with nests, rows in the order of the source. *out owns all its rows and texts, so the
- * source may go: a table can be made at run time. field_table_free() frees it; after an error it is empty.
- * STATUS_CONTENT: a path of FIELD_TEXT_SIZE bytes or more. STATUS_MEMORY. */
-status field_table_build(const struct field_table *source, struct field_table *out, struct error *error);
-void field_table_free(struct field_table *table);
-/* FIELD_TABLE_AT_START(table, source): builds `table`, a variable of the file, before main() begins; it is constant
- * from then on. The process ends with STATUS_MEMORY when memory is refused. */
+/* FIELD_TABLE_AT_START(table, source): builds `table`, a variable of the file, before main() begins: the flat table of
+ * one with nests, rows in the order of the source. It is constant from then on. The process ends with STATUS_MEMORY
+ * when memory is refused. */
 #define FIELD_TABLE_AT_START(table_, source_)                                                                          \
   __attribute__((constructor)) static void start_##table_(void) {                                                      \
     field_table_start(&source_, &table_);                                                                              \

@@ -17,50 +17,23 @@ struct level {
   unsigned flags; /* of all nests */
 };
 
-/* The memory of a table. The builder goes over the source twice: first it counts, and all pointers are NULL. */
-struct builder {
-  struct field *rows;
-  const char **choices;
-  char *text;
-  size_t row_count, choice_count, text_size, text_room; /* text_room: bytes at `text` */
-};
-
-static const char *put(struct builder *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static const char *put(struct builder *b, const char *format, ...) {
-  char *to = b->text ? b->text + b->text_size : NULL;
+/* A text of the table. It lives as long as the process, as all of the table does. */
+static const char *text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static const char *text(const char *format, ...) {
+  char *to = NULL;
   va_list arguments;
   va_start(arguments, format);
-  const size_t room = b->text_room - b->text_size;
-  const int length = vsnprintf(to, to ? room : 0, format, arguments);
+  if (vasprintf(&to, format, arguments) < 0)
+    memory_refused();
   va_end(arguments);
-  assert(!to || (size_t)length < room); /* counted before */
-  b->text_size += (size_t)length + 1;
   return to;
 }
 
-static const char *put_text(struct builder *b, const char *text) {
-  return text ? put(b, "%s", text) : NULL;
-}
-
-static const char *const *put_choices(struct builder *b, const char *const *choices) {
-  if (!choices)
-    return NULL;
-  const char **to = b->choices ? b->choices + b->choice_count : NULL;
-  for (size_t i = 0;; i++) {
-    const char *word = put_text(b, choices[i]);
-    if (to)
-      to[i] = word;
-    b->choice_count++;
-    if (!choices[i])
-      return to;
-  }
-}
-
 /* A condition written in the table at `prefix`, from the root. NULL: it is about something around the whole table. */
-static const char *put_condition(struct builder *b, const char *when, const char *prefix) {
+static const char *condition(const char *when, const char *prefix) {
   size_t length = strlen(prefix);
   if (*when == '/')
-    return put(b, "%s", when + 1);
+    return when + 1;
   for (; strncmp(when, "../", 3) == 0; when += 3) {
     if (length == 0)
       return NULL;
@@ -68,7 +41,7 @@ static const char *put_condition(struct builder *b, const char *when, const char
       length--;
     length -= length > 0;
   }
-  return put(b, "%.*s%s%s", (int)length, prefix, length ? "." : "", when);
+  return text("%.*s%s%s", (int)length, prefix, length ? "." : "", when);
 }
 
 /* The part of a path after a prefix; NULL when the path is not under it. */
@@ -104,34 +77,31 @@ static struct words words_for(const struct field *row, const char *path, const s
   return words;
 }
 
-static void add_row(struct builder *b, const struct field *row, const char *path, const struct level *level) {
+static void add_row(struct field_table *table, const struct field *row, const char *path, const struct level *level) {
   const struct words words = words_for(row, path, level);
   const struct field *own = words.own;
-  struct field copy = *row;
-  copy.offset += level->offset;
-  copy.flags |= level->flags;
+  struct field *rows = realloc((void *)table->rows, (table->count + 1) * sizeof *rows);
+  if (!rows)
+    memory_refused();
+  struct field *copy = &rows[table->count++];
+  table->rows = rows;
+  *copy = *row;
+  copy->offset += level->offset;
+  copy->flags |= level->flags;
   if (level->flags & FIELD_DERIVED)
-    copy.flags &= ~(unsigned)FIELD_REQUIRED;
-  copy.path = put_text(b, path);
-  copy.unit = put_text(b, row->unit);
-  copy.number = own ? own->number : row->number;
-  copy.text = put_text(b, own && own->text ? own->text : row->text);
-  copy.choices = put_choices(b, row->choices);
-  copy.choice_docs = put_text(b, row->choice_docs);
+    copy->flags &= ~(unsigned)FIELD_REQUIRED;
+  copy->path = text("%s", path);
+  copy->number = own ? own->number : row->number;
+  copy->text = own && own->text ? own->text : row->text;
   if (own && own->when)
-    copy.when = put_condition(b, own->when, words.own_prefix);
+    copy->when = condition(own->when, words.own_prefix);
   else if (row->when)
-    copy.when = put_condition(b, row->when, level->prefix);
+    copy->when = condition(row->when, level->prefix);
   else
-    copy.when = words.when ? put_condition(b, words.when, words.when_prefix) : NULL;
-  copy.absent = put_text(b, row->absent);
-  const char *doc = own && own->doc ? own->doc : row->doc;
-  copy.doc = words.doc ? put(b, "%s %s", doc ? doc : "", words.doc) : put_text(b, doc);
-  copy.source = put_text(b, row->source);
-  copy.label = put_text(b, row->label);
-  if (b->rows)
-    b->rows[b->row_count] = copy;
-  b->row_count++;
+    copy->when = words.when ? condition(words.when, words.when_prefix) : NULL;
+  copy->doc = own && own->doc ? own->doc : row->doc;
+  if (words.doc)
+    copy->doc = text("%s %s", copy->doc ? copy->doc : "", words.doc);
 }
 
 /* Does a nest take a path in, by the nests' `only`? */
@@ -147,57 +117,25 @@ static bool is_taken(const char *path, const struct level *level) {
   return true;
 }
 
-static status add_table(struct builder *b, const struct field_table *table, const struct level *level,
-                        struct error *error) {
+static void add_table(struct field_table *to, const struct field_table *table, const struct level *level) {
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     char path[FIELD_TEXT_SIZE];
     const char *own = row->path ? row->path : "";
     const int length = snprintf(path, sizeof path, "%s%s%s", level->prefix, *level->prefix && *own ? "." : "", own);
-    if (length < 0 || (size_t)length >= sizeof path)
-      return status_fail(error, STATUS_CONTENT, "the path '%.60s...' is longer than %zu bytes", path, sizeof path - 1);
+    assert(length >= 0 && (size_t)length < sizeof path);
+    (void)length;
     if (row->nest) {
       const struct level inner = {level, row, path, level->offset + row->offset, level->flags | row->flags};
-      TRY(add_table(b, row->nest, &inner, error));
+      add_table(to, row->nest, &inner);
     } else if (is_taken(path, level)) {
-      add_row(b, row, path, level);
+      add_row(to, row, path, level);
     }
   }
-  return STATUS_OK;
-}
-
-/* Everything that a table owns, or its size while `b` only counts. */
-static status add_all(struct builder *b, const struct field_table *source, struct field_table *out,
-                      struct error *error) {
-  const struct level top = {.prefix = ""};
-  out->name = put_text(b, source->name);
-  out->doc = put_text(b, source->doc);
-  return add_table(b, source, &top, error);
-}
-
-status field_table_build(const struct field_table *source, struct field_table *out, struct error *error) {
-  struct builder count = {0};
-  *out = (struct field_table){.size = source->size};
-  TRY(add_all(&count, source, out, error));
-  const size_t rows = count.row_count * sizeof *count.rows, choices = count.choice_count * sizeof *count.choices;
-  char *memory = malloc(rows + choices + count.text_size);
-  if (!memory)
-    return status_fail(error, STATUS_MEMORY, "no memory for the rows of the %s", source->name);
-  struct builder b = {(void *)memory, (void *)(memory + rows), memory + rows + choices, 0, 0, 0, count.text_size};
-  (void)add_all(&b, source, out, NULL); /* the count has found all errors */
-  out->rows = b.rows;
-  out->count = b.row_count;
-  return STATUS_OK;
-}
-
-void field_table_free(struct field_table *table) {
-  free((void *)table->rows);
-  *table = (struct field_table){0};
 }
 
 void field_table_start(const struct field_table *source, struct field_table *table) {
-  const status code = field_table_build(source, table, NULL);
-  assert(!code || code == STATUS_MEMORY);
-  if (code)
-    memory_refused();
+  const struct level top = {.prefix = ""};
+  *table = (struct field_table){.size = source->size, .name = source->name, .doc = source->doc};
+  add_table(table, source, &top);
 }

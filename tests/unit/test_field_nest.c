@@ -1,5 +1,4 @@
-/* Tables that contain tables: paths, places, conditions, defaults and order of the rows, and tables made at run time.
- */
+/* Tables that contain tables: paths, places, conditions, defaults and order of the rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +99,8 @@ static const struct field_table nested = FIELD_TABLE(scene_rows, struct scene, "
 
 static struct field_table scene;
 FIELD_TABLE_AT_START(scene, nested)
+static struct field_table alone;
+FIELD_TABLE_AT_START(alone, rocks)
 
 static const struct field *row(const char *path) {
   for (size_t i = 0; i < scene.count; i++)
@@ -151,10 +152,7 @@ static void conditions_are_relative_to_the_table_of_their_row(void **state) {
   assert_string_equal(row("projectile.rock.grain")->when, "impact=true");
   assert_string_equal(row("projectile.shape")->when, "target.solid=true"); /* of the nest's own row */
 
-  struct field_table alone;
-  assert_int_equal(field_table_build(&rocks, &alone, NULL), STATUS_OK);
   assert_null(alone.rows[0].when); /* it is about a body, and there is none */
-  field_table_free(&alone);
 
   struct scene object;
   field_defaults(&scene, &object);
@@ -179,76 +177,11 @@ static void a_nest_changes_its_rows(void **state) {
   assert_int_equal(row("target.radius")->flags, 0);
 }
 
-/* A table whose source is gone, with rows of the kinds that have texts. */
-static void tables_are_made_at_run_time(void **state) {
-  (void)state;
-  struct thing {
-    int law;
-    char name[FIELD_TEXT_SIZE];
-  };
-  struct field_table table;
-  char *words[] = {strdup("weak"), strdup("strong")}, *doc = strdup("Which law."), *path = strdup("law");
-  const char **choices = calloc(3, sizeof *choices);
-  choices[0] = words[0];
-  choices[1] = words[1];
-  struct field rows[] = {
-      {.path = path, .kind = FIELD_CHOICE, .offset = offsetof(struct thing, law), .choices = choices, .doc = doc},
-      {.path = "name",
-       .kind = FIELD_TEXT,
-       .offset = offsetof(struct thing, name),
-       .text = words[1],
-       .when = "law=weak"},
-  };
-  const struct field_table source = FIELD_TABLE(rows, struct thing, doc, path);
-  assert_int_equal(field_table_build(&source, &table, NULL), STATUS_OK);
-  free(words[0]);
-  free(words[1]);
-  free(choices);
-  free(doc);
-  free(path);
-  memset(rows, 0xff, sizeof rows);
-
-  struct thing thing, back = {0};
-  uint8_t bytes[600];
-  field_defaults(&table, &thing);
-  assert_string_equal(thing.name, "strong");
-  char *text = field_json(&table, &thing);
-  assert_string_equal(text, "{\"law\":\"weak\",\"name\":\"strong\"}");
-  free(text);
-  const size_t size = field_encode(&table, &thing, bytes);
-  assert_int_equal(field_decode(&table, bytes, size, &back), size);
-  assert_string_equal(back.name, "strong");
-  assert_string_equal(table.rows[0].doc, "Which law.");
-  assert_string_equal(table.name, "Which law.");
-  field_table_free(&table);
-  assert_int_equal(table.count, 0);
-}
-
-static void paths_have_an_end(void **state) {
-  (void)state;
-  char lengthy[200];
-  memset(lengthy, 'a', sizeof lengthy);
-  lengthy[199] = 0;
-  const struct field inner[] = {{.path = lengthy, .kind = FIELD_BOOLEAN}};
-  const struct field_table small = FIELD_TABLE(inner, bool, "small", "");
-  const struct field outer[] = {{.path = lengthy, .nest = &small}};
-  const struct field_table source = FIELD_TABLE(outer, bool, "large", "");
-  struct field_table table;
-  struct error error;
-  assert_int_equal(field_table_build(&small, &table, &error), STATUS_OK);
-  field_table_free(&table);
-  assert_int_equal(field_table_build(&source, &table, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "is longer than 255 bytes"));
-  field_table_free(&table); /* nothing */
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rows_stand_in_order_at_their_places),
       cmocka_unit_test(conditions_are_relative_to_the_table_of_their_row),
       cmocka_unit_test(a_nest_changes_its_rows),
-      cmocka_unit_test(tables_are_made_at_run_time),
-      cmocka_unit_test(paths_have_an_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
