@@ -94,7 +94,7 @@ size_t scene_files_of(const struct field_table *inputs, const void *object,
 /* Path of the result that the scene is made for: M_1/M where bodies break. */
 const char *scene_headline(const struct scene *scene);
 
-/* JSON Schema of this engine's scene documents. */
+/* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */
 void scene_schema(const struct engine_kind *kind, FILE *out);
 
 char *scene_json(const struct scene *scene); /* resolved: engine, name and every active input; malloc'd */

@@ -1,5 +1,6 @@
 /* JSON Schema (draft-07) of a field table, for editors (yaml-language-server) and for the test that compares an
- * independent validator with our reader on the same documents. `clast schema` prints it. */
+ * independent validator with our reader on the same documents. `clast schema` prints it. The committed copies in
+ * schemas/ are written by the build target schemas, and a test compares them. */
 #pragma once
 
 #include <stdio.h>
