@@ -79,6 +79,15 @@ function followWidth() {
   });
 }
 
+// `clast report --watch` writes the page again; a reader in the middle of a question is not interrupted.
+function loadAgain(seconds) {
+  if (!(seconds > 0)) return;
+  tell(`The campaign is running: this page loads itself again every ${seconds} s.`);
+  setInterval(() => {
+    if (document.activeElement?.tagName !== 'TEXTAREA' && state.stores.every((store) => !store.whole)) location.reload();
+  }, 1000 * seconds);
+}
+
 async function start() {
   try {
     state.stores = await openEmbedded();
@@ -92,6 +101,7 @@ async function start() {
     followWidth();
     tell('');
     await show('store');
+    loadAgain(Number(state.stores[0].facts.refresh));
   } catch (error) {
     tell(`This page cannot show its data: ${error.message}. It needs a browser of 2023 or later.`);
     throw error;

@@ -8,11 +8,13 @@
 #include "campaign/commands/commands.h"
 #include "schemas/file.h"
 
-enum { STORES = 8 };
+enum { STORES = 8, EVERY_MOST = 86400 };
 enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* most pictures of one page */ };
 
 struct options {
   const char *output;
+  bool watch;
+  int64_t every;
 };
 
 struct report_choice {
@@ -20,6 +22,7 @@ struct report_choice {
   char *const *stores; /* operands: ask_choose_operand() */
   const char *output;
   struct ask_choice runs; /* of each store */
+  int64_t refresh;        /* s, after which an open page loads itself again; 0: never */
 };
 
 struct making {
@@ -35,11 +38,12 @@ struct making {
 };
 
 static status add_facts(struct making *making, const char *name, const char *path, struct error *error) {
-  char now[32], name_of_main[ASK_GROUP_NAME];
+  char now[32], refresh[32], name_of_main[ASK_GROUP_NAME];
   const char *quantity = NULL;
   TRY(ask_quantity_main(making->store, name_of_main, &quantity, error));
   const time_t seconds = time(NULL);
   strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
+  snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);
   char kg[64];
   TRY(ask_columns_unit(making->store, OUTCOME_NAME(mean_fragment_mass), kg, sizeof kg, error));
   const char *facts[][2] = {{"store", name},
@@ -49,6 +53,7 @@ static status add_facts(struct making *making, const char *name, const char *pat
                             {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
                             {"default_quantity", quantity},
                             {"pictures_by", OUTCOME_DEFAULT},
+                            {"refresh", refresh},
                             {"chosen", ask_chosen(making->store)},
                             {"campaign", making->runs->campaign},
                             {"where", making->runs->where},
@@ -238,6 +243,17 @@ static status make(const struct report_choice *choice, size_t *size, struct erro
   return code;
 }
 
+/* True while a campaign writes one of the stores. */
+static bool is_running(const struct report_choice *choice) {
+  bool running = false;
+  for (size_t i = 0; i < choice->count; i++) {
+    char path[LIMITS_PATH];
+    ask_choose_operand(choice->stores[i], path, sizeof path, &(struct ask_choice){0});
+    running = running || store_is_being_written(path);
+  }
+  return running;
+}
+
 /* demo.html in the current folder for the store folder/demo.db, demo@1.html for folder/demo.db:1: demo-1.html is the
  * page of demo-1.db. */
 static void name_page(const char *operand, char *name, size_t size) {
@@ -249,6 +265,21 @@ static void name_page(const char *operand, char *name, size_t size) {
            *part ? "@" : "", *part ? part + 1 : "");
   for (char *at = name; (at = strchr(at, '/'));)
     *at = '-'; /* in the name of a campaign */
+}
+
+/* Makes the page again and again while a campaign writes one of the stores, and once more at its end. */
+static status watch(struct report_choice *choice, int64_t every, size_t *size, struct error *error) {
+  bool running;
+  do {
+    running = is_running(choice);
+    choice->refresh = running ? every : 0;
+    TRY(make(choice, size, error));
+    if (running) {
+      fprintf(stderr, "%s written; again in %lld s, while the campaign runs\n", choice->output, (long long)every);
+      sleep((unsigned)every);
+    }
+  } while (running);
+  return STATUS_OK;
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -264,15 +295,15 @@ static status run(const struct command_line *line, struct error *error) {
     return status_fail(error, STATUS_USAGE, "%s: the page is HTML, which a browser can print: name it PAGE.html",
                        options->output);
   name_page(line->arguments[0], name, sizeof name);
-  const struct report_choice choice = {.runs = line->choice,
-                                       .count = line->count,
-                                       .stores = line->arguments,
-                                       .output = options->output ? options->output : name};
+  struct report_choice choice = {.runs = line->choice,
+                                 .count = line->count,
+                                 .stores = line->arguments,
+                                 .output = options->output ? options->output : name};
   if (!options->output && page_is_of_other(name, number_of(line->arguments[0], name)))
     return status_fail(error, STATUS_IO, "%s is the page of another store: name this one with -o", name);
   if (!options->output)
     TRY(file_claim(name, "page", error));
-  const status code = make(&choice, &size, error);
+  const status code = options->watch ? watch(&choice, options->every, &size, error) : make(&choice, &size, error);
   if (code == STATUS_OK)
     fprintf(stderr, "%s written (%.2f MB); open it in a browser\n", choice.output, 1e-6 * (double)size);
   return code;
@@ -280,6 +311,8 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row option_rows[] = {
     OPTION_ROW_OUTPUT(OPTION_OUTPUT, "output", 'o', "PAGE.html", struct options, output),
+    OPTION_ROW_FLAG("watch", 0, struct options, watch),
+    OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10"),
 };
 
 COMMAND(report, "results", "STORE...", .chooses_runs = true, COMMAND_OPTIONS(struct options, option_rows), .run = run);

@@ -248,12 +248,13 @@ def written_store(browser):
     done("the file of a store that is being written is read, and the page says what may be missing")
 
 
-def odd_store(browser):
-    """A page whose store has what small campaigns lack: two modes, withheld values, many campaigns."""
+def loads_again(browser):
+    """As a page of --watch: it loads itself again after a second, with what was chosen. Two modes of any result are marked."""
     html = open(page, encoding="utf-8").read()
     (data,) = re.findall(r'class="store">([^<]*)<', html)
     with sqlite3.connect(":memory:") as db:
         db.deserialize(gzip.decompress(base64.b64decode(data)))
+        db.execute("UPDATE fact SET value = '1' WHERE name = 'refresh'")
         db.execute("INSERT INTO modes VALUES (3, 'broken', 20, 60, 40, 0.25, 0.1, 0.5)")
         db.execute("DELETE FROM doubt WHERE point_id = 3") # a run stands in one row: with all its words
         db.execute("INSERT INTO doubt VALUES (3, 'sph', 'box', 3)")
@@ -263,10 +264,13 @@ def odd_store(browser):
         db.execute("INSERT INTO campaign_point SELECT 5, min(point_id) FROM campaign_point UNION SELECT 6, max(point_id) FROM campaign_point")
         db.commit()
         changed = base64.b64encode(gzip.compress(db.serialize())).decode()
-    with open("odd.html", "w", encoding="utf-8") as file:
+    with open("again.html", "w", encoding="utf-8") as file:
         file.write(html.replace(data, changed))
-    browser.open("odd.html", "#points=3&quantity=broken")
+    browser.open("again.html", "#points=3&quantity=broken")
     wait_shown(browser, 1)
+    start = browser.js("performance.timeOrigin")
+    browser.until(f"performance.timeOrigin !== {start} && document.body?.dataset.shown >= 1")
+    # The page may be loading itself again at any moment: each look at it is one expression.
     browser.until("document.querySelector('#chosen')?.textContent.includes('point 3')")
     browser.until("document.querySelector('#plane-chart svg')?.textContent.split('◆').length === 2"
                   " && document.querySelector('#points').textContent.includes('two: 20 and 60')")
@@ -274,7 +278,7 @@ def odd_store(browser):
     browser.until("document.querySelector('h1')?.textContent.endsWith(', more 2, more 3 and 1 more')")
     browser.until("[...document.querySelectorAll('#asked summary')].slice(-2).map((s) => s.textContent).join() === 'The campaign file of more 4, number 5,The campaign file of more 4, number 6'")
     done("a title names three campaigns, and no search whose points the page leaves out")
-    browser.open("odd.html", "#points=3")
+    browser.open("again.html", "#points=3")
     browser.until("/has a value of this quantity. !: in doubt, 3 of 3 runs: box .explained above../.test(document.querySelector('#seeds')?.textContent)")
     done("values that are withheld are told with their reason")
     browser.open(page, "#quantity=beta")
@@ -282,6 +286,7 @@ def odd_store(browser):
     assert "the exponent is too uncertain to print: fewer than 5 fragments" in text(browser, "#plane-chart"), text(browser, "#plane-chart")
     assert "no β: fewer than 5 fragments" in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
     done("an exponent that no table shows is not drawn, and the page says why")
+    done("a page of a running campaign loads itself again, and keeps what was chosen")
 
 
 def marks(browser):
@@ -524,7 +529,7 @@ with Browser() as browser:
     seeds(browser)
     one_run(browser)
     sql(browser)
-    odd_store(browser)
+    loads_again(browser)
     browser.open(page)
     wait_shown(browser, 1)
     keep_downloads(browser)

@@ -192,6 +192,29 @@ JS
 done
 ok "intervals"
 
+# A page that is made again while a campaign runs, and a last time when it ends.
+slow watched
+"$clast" run watched.yaml -j 1 --quiet >/dev/null 2>&1 &
+campaign=$!
+for _ in $(seq 100); do ! "$clast" status watched.db >/dev/null 2>&1 || break; sleep 0.05; done
+expect 0 "$clast" report watched.db --watch --every 1
+wait "$campaign" || fail "the watched campaign failed"
+[ "$(grep -c 'while the campaign runs' err)" -ge 1 ] || fail "the page was not made while the campaign ran"
+expect 0 "$clast" report watched.db -o last.html
+python - <<'PY'
+import base64, gzip, re, sqlite3
+def data(page):
+    (text,) = re.findall(r'class="store">([^<]*)<', open(page).read())
+    db = sqlite3.connect(':memory:')
+    db.deserialize(gzip.decompress(base64.b64decode(text)))
+    return db
+watched, last = data('watched.html'), data('last.html')
+for question in ("select count(*) from runs", "select value from fact where name = 'refresh'"):
+    a, b = (db.execute(question).fetchone() for db in (watched, last))
+    assert a == b, (question, a, b)
+PY
+ok "the page of a watched campaign ends with all its runs"
+
 if [ "$sanitized" -eq 0 ]; then
   command -v chromium >/dev/null || fail "chromium is missing: ./setup.sh packages installs it"
   tiny other # 8 points, too many to distinguish in one chart
@@ -255,7 +278,7 @@ JS
   expect 0 "$clast" report levels.db --studies
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db marked three || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 65
+  done_after 68
 else
-  done_after 40
+  done_after 43
 fi
