@@ -7,6 +7,7 @@
  * `warnings`. Under the sanitizers scenes are left out whose bodies and rules another scene has (again()). A line that
  * changes on purpose is written anew by CLAST_RENEW=1. Where the first hash of a line changes, tests/support/golden.h
  * says what else to do; a new row of results changes no hash while it is off. */
+#define CHECK_OWN_MAIN
 #include "engine/sph/run/run.h"
 #include "tests/support/golden.h"
 #include "tests/support/pinned.h"
@@ -176,8 +177,7 @@ static struct scene *small_scene(size_t k) {
   return scene;
 }
 
-static void every_scene_runs(void **state) {
-  (void)state;
+TEST(every_scene_runs) {
   for (size_t k = 0; k < scene_builtin_count(); k++) {
     size_t at = 0;
     while (at < SMALLEST && strcmp(smallest[at].scene, scene_builtin_name(k)) != 0)
@@ -211,8 +211,7 @@ static bool chosen(const struct scene *scene, const char *path, const char *text
 }
 
 /* Choices that a scene refuses, or that have no effect in it, are left out. */
-static void every_choice_runs(void **state) {
-  (void)state;
+TEST(every_choice_runs) {
   static const char *const switched[] = {"false", "true", NULL};
   size_t ran = 0;
   for (size_t k = 0; k < SMALLEST; k++) {
@@ -257,8 +256,7 @@ static void tell(const struct scene *scene, const char *path, double number) {
 
 /* Every number that a scene uses: below and above its own value, far off, zero and off. Nothing is run. What the
  * program says of the scene is heard and its identity, or why it is refused. */
-static void every_number_is_told(void **state) {
-  (void)state;
+TEST(every_number_is_told) {
   for (size_t k = 0; k < SMALLEST; k++) {
     if (!smallest[k].numbers || again(smallest[k].scene, true))
       continue;
@@ -453,8 +451,7 @@ static bool is_idle(const char *scene, const char *path) {
 
 /* An input that a scene takes changes its bits, or is in the list with the reason. Quick form: one scene of each
  * engine; CLAST_FULL=1: all (four minutes). */
-static void every_input_acts(void **state) {
-  (void)state;
+TEST(every_input_acts) {
   if (SANITIZED) /* it is about bits; the other tests walk the same code */
     skip();
   size_t wrong = 0, acted = 0;
@@ -495,8 +492,7 @@ static void begin_and_end(void *context) {
   }
 }
 
-static void no_run_leaves_memory(void **state) {
-  (void)state;
+TEST(no_run_leaves_memory) {
   if (SANITIZED) /* they see leaks by themselves, and mallinfo2() knows nothing of their allocator */
     skip();
   for (size_t k = 0; k < SMALLEST; k++) {
@@ -506,8 +502,7 @@ static void no_run_leaves_memory(void **state) {
   }
 }
 
-static void every_bit_is_pinned(void **state) {
-  (void)state;
+TEST(every_bit_is_pinned) {
   fclose(lines);
   if (SANITIZED)
     pinned_among("extremes/choices.txt", lines_text);
@@ -521,8 +516,5 @@ int main(int count, char **arguments) {
   if (!golden_start(arguments))
     return 71;
   assert_non_null(lines = open_memstream(&lines_text, &lines_size));
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_runs),     cmocka_unit_test(every_choice_runs),
-                                     cmocka_unit_test(every_number_is_told), cmocka_unit_test(every_bit_is_pinned),
-                                     cmocka_unit_test(every_input_acts),     cmocka_unit_test(no_run_leaves_memory)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return check_run(NULL, NULL);
 }

@@ -23,8 +23,7 @@ static void sentence_of(const char *text) {
   assert_true(text[strlen(text) - 1] != '.' && text[strlen(text) - 1] != ' ');
 }
 
-static void rows_are_well_formed(void **state) {
-  (void)state;
+TEST(rows_are_well_formed) {
   for (size_t e = 0; e < engine_count(); e++) {
     const struct engine_kind *kind = engine_at(e);
     size_t count = 0;
@@ -108,8 +107,7 @@ static const struct condition rows[] = {
     {0},
 };
 
-static void bounds_are_exclusive_and_the_end_decides(void **state) {
-  (void)state;
+TEST(bounds_are_exclusive_and_the_end_decides) {
   char *text = NULL, words[100];
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
@@ -737,8 +735,7 @@ static bool is_marked(const struct twin *twin, const char *const *more) {
 }
 
 /* A set holds as many rows as an engine may have. */
-static void many_rows(void **state) {
-  (void)state;
+TEST(many_rows) {
   static struct condition list[CONDITION_MOST + 1];
   static char names[CONDITION_MOST][8];
   for (size_t k = 0; k < CONDITION_MOST; k++) {
@@ -769,8 +766,7 @@ static void many_rows(void **state) {
   free(text);
 }
 
-static void runs_beyond_a_bound_are_marked_and_their_twins_are_not(void **state) {
-  (void)state;
+TEST(runs_beyond_a_bound_are_marked_and_their_twins_are_not) {
   size_t wrong = 0;
   for (size_t k = 0; k < sizeof twins / sizeof *twins; k++) {
     const bool beyond = is_marked(&twins[k], twins[k].beyond), sound = is_marked(&twins[k], twins[k].sound);
@@ -780,14 +776,4 @@ static void runs_beyond_a_bound_are_marked_and_their_twins_are_not(void **state)
     wrong++;
   }
   assert_int_equal(wrong, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_are_well_formed),
-      cmocka_unit_test(bounds_are_exclusive_and_the_end_decides),
-      cmocka_unit_test(many_rows),
-      cmocka_unit_test(runs_beyond_a_bound_are_marked_and_their_twins_are_not),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

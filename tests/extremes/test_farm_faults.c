@@ -1,5 +1,6 @@
 /* Faults and signals on one machine: after kill -9 of any process at any instant, no process is left behind and the
  * program ends with a clear status. */
+#define CHECK_OWN_MAIN
 #include "tests/support/check.h"
 #include "tests/support/farm_process.h"
 
@@ -10,8 +11,7 @@ static const char *program;
 /* Depth of the killed process under the program. In isolation: program - server - slot - child. */
 enum { MANAGER = -1, SERVER = 0, SLOT = 1, CHILD = 2 };
 
-static void kill_anything(void **state) {
-  (void)state;
+TEST(kill_anything) {
   const bool full = getenv("CLAST_FULL") != NULL;
   const int rounds = full ? 20 : 2;
   for (int in_process = 0; in_process < 2; in_process++) {
@@ -46,8 +46,7 @@ static void kill_anything(void **state) {
   }
 }
 
-static void signals_drain(void **state) {
-  (void)state;
+TEST(signals_drain) {
   const int signals[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP, SIGUSR2, SIGXCPU};
   for (int i = 0; i < 6; i++) {
     struct outcome_of out;
@@ -66,8 +65,7 @@ static void signals_drain(void **state) {
 }
 
 /* Signals that batch systems send early: runs that need longer than the grace period are finished. */
-static void early_signals_wait(void **state) {
-  (void)state;
+TEST(early_signals_wait) {
   const int signals[] = {SIGUSR1, SIGUSR2, SIGXCPU};
   for (int i = 0; i < 3; i++) {
     struct outcome_of out;
@@ -83,8 +81,7 @@ static void early_signals_wait(void **state) {
 }
 
 /* Tasks that do not end within the grace period are dropped; a second signal ends the grace period at once. */
-static void long_runs_are_dropped(void **state) {
-  (void)state;
+TEST(long_runs_are_dropped) {
   for (int second = 0; second < 2; second++) {
     struct outcome_of out;
     const struct running it = launch(program, (struct launch){ALONE, .count = 10, .kind = TASK_SLEEP, .amount = 30});
@@ -108,8 +105,7 @@ static void long_runs_are_dropped(void **state) {
 }
 
 /* Slots that tasks crash again and again are restarted; the series of crashes ends. */
-static void crash_storm(void **state) {
-  (void)state;
+TEST(crash_storm) {
   for (int in_process = 0; in_process < 2; in_process++) {
     struct outcome_of out;
     const struct running it = launch(program,
@@ -122,8 +118,7 @@ static void crash_storm(void **state) {
   }
 }
 
-static void stdout_stays_clean(void **state) {
-  (void)state;
+TEST(stdout_stays_clean) {
   char path[] = "/tmp/clast_farm_stdout_XXXXXX", text[64] = "";
   const int file = mkstemp(path), saved = dup(STDOUT_FILENO);
   fflush(stdout);
@@ -146,8 +141,5 @@ int main(int argc, char **argv) {
     return program_work(argv);
   char path[4096];
   program = program_path(path, sizeof path);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kill_anything),      cmocka_unit_test(signals_drain),
-                                     cmocka_unit_test(early_signals_wait), cmocka_unit_test(long_runs_are_dropped),
-                                     cmocka_unit_test(crash_storm),        cmocka_unit_test(stdout_stays_clean)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return check_run(NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* The farm over MPI ranks, started by mpirun as a user does: same answers, no busy wait, and every way in which a
  * process can be killed. */
+#define CHECK_OWN_MAIN
 #include <poll.h>
 #include <signal.h>
 #include <sys/syscall.h>
@@ -16,8 +17,7 @@ static uint64_t expected_sum(int count) {
   return sum;
 }
 
-static void same_answers_whatever_the_ranks(void **state) {
-  (void)state;
+TEST(same_answers_whatever_the_ranks) {
   const struct launch launches[] = {
       {.ranks = 0, .slots = 2, .count = 300, .special = -1},
       {.ranks = 1, .slots = 1, .count = 300, .special = -1},
@@ -44,8 +44,7 @@ static void same_answers_whatever_the_ranks(void **state) {
   }
 }
 
-static void a_crash_costs_one_run(void **state) {
-  (void)state;
+TEST(a_crash_costs_one_run) {
   const int kinds[] = {TASK_SEGV, TASK_HANG};
   for (int i = 0; i < 2; i++) {
     struct outcome_of out;
@@ -74,8 +73,7 @@ int ppoll(struct pollfd *fds, nfds_t count, const struct timespec *timeout, cons
 }
 
 /* One task of 2 s on one rank: the manager and the ranks with nothing to do sleep. */
-static void idle_ranks_sleep(void **state) {
-  (void)state;
+TEST(idle_ranks_sleep) {
   struct outcome_of out;
   const struct running
       it = launch(program,
@@ -93,8 +91,7 @@ static void idle_ranks_sleep(void **state) {
 
 /* A dead rank ends the job in Open MPI 4.1. The manager receives SIGTERM and is called to commit; no process is left
  * over. */
-static void a_killed_rank_ends_the_job(void **state) {
-  (void)state;
+TEST(a_killed_rank_ends_the_job) {
   const int rounds = getenv("CLAST_FULL") ? 10 : 1;
   for (int victim = 0; victim < 3; victim++) { /* rank 0, rank 1, mpirun */
     for (int round = 0; round < rounds; round++) {
@@ -117,8 +114,7 @@ static void a_killed_rank_ends_the_job(void **state) {
   }
 }
 
-static void signals_to_mpirun(void **state) {
-  (void)state;
+TEST(signals_to_mpirun) {
   const int signals[] = {SIGUSR1, SIGUSR2, SIGTERM, SIGINT};
   for (int i = 0; i < 4; i++) {
     struct outcome_of out;
@@ -148,8 +144,7 @@ static void signals_to_mpirun(void **state) {
 
 /* A rank that freezes is noticed; its run is lost, the others finish, and the program ends with MPI_Abort because
  * MPI_Finalize would hang. */
-static void a_frozen_rank_is_left_behind(void **state) {
-  (void)state;
+TEST(a_frozen_rank_is_left_behind) {
   struct outcome_of out;
   const struct running it = launch(program, (struct launch){.ranks = 3,
                                                             .slots = 1,
@@ -177,13 +172,5 @@ int main(int argc, char **argv) {
     return program_work(argv);
   char path[4096];
   program = program_path(path, sizeof path);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_answers_whatever_the_ranks),
-      cmocka_unit_test(a_crash_costs_one_run),
-      cmocka_unit_test(idle_ranks_sleep),
-      cmocka_unit_test(a_killed_rank_ends_the_job),
-      cmocka_unit_test(signals_to_mpirun),
-      cmocka_unit_test(a_frozen_rank_is_left_behind),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return check_run(NULL, NULL);
 }

@@ -24,8 +24,7 @@ static void one_piece(const struct ran *ran, double energy, double momentum) {
   assert_true(ran->outcome.momentum_error < momentum);
 }
 
-static void grains_that_cannot_part_stay_one_body(void **state) {
-  (void)state;
+TEST(grains_that_cannot_part_stay_one_body) {
   const struct dem_inputs cases[] = {
       DISC("threshold.breaking=false"),
       DISC("threshold.strain=100000 %", "threshold.angle=1000 rad"),
@@ -42,8 +41,7 @@ static void grains_that_cannot_part_stay_one_body(void **state) {
 }
 
 /* The weakest charge that is allowed, in place of a body at rest: no beam breaks, and the ledger closes. */
-static void a_charge_of_nothing_breaks_nothing(void **state) {
-  (void)state;
+TEST(a_charge_of_nothing_breaks_nothing) {
   const struct dem_inputs inputs = DISC("charge.energy=1e-12 J/m");
   struct ran ran = run_case_run(&dem_engine, &inputs, 3);
   one_piece(&ran, 2e-3, 1e-11); /* bounds as in the case above */
@@ -53,8 +51,7 @@ static void a_charge_of_nothing_breaks_nothing(void **state) {
 
 /* Beams without strength: each grain is a fragment, and the largest fragment is the largest grain. Each of the two
  * thresholds is enough. */
-static void beams_of_no_strength_leave_dust(void **state) {
-  (void)state;
+TEST(beams_of_no_strength_leave_dust) {
   const struct dem_inputs cases[] = {
       DISC("threshold.strain=1e-7 %", "threshold.angle=1e-6 deg"),
       DISC("threshold.strain=1e-7 %", "threshold.angle=1000 rad"),
@@ -73,8 +70,7 @@ static void beams_of_no_strength_leave_dust(void **state) {
 
 /* The thresholds themselves: with modulus m the logarithm of a factor is ln(-ln(1 - u))/m. Of 1e3 draws of u the
  * smallest is about 1e-3, and 20 bounds the other logarithm up to u = 2e-9. Weights are 1/strain^2 and 1/angle. */
-static void thresholds_of_large_modulus_have_one_value(void **state) {
-  (void)state;
+TEST(thresholds_of_large_modulus_have_one_value) {
   const double modulus = 1e6;
   const struct dem_inputs inputs[] = {DISC("threshold.modulus=off"), DISC("threshold.modulus=1e6")};
   struct dem_run *run[2] = {NULL, NULL};
@@ -94,8 +90,7 @@ static void thresholds_of_large_modulus_have_one_value(void **state) {
 }
 
 /* m to infinity: thresholds drawn from a law with a single value equal that value. */
-static void thresholds_of_large_modulus_are_all_alike(void **state) {
-  (void)state;
+TEST(thresholds_of_large_modulus_are_all_alike) {
   const struct dem_inputs cases[] = {DISC("threshold.modulus=off"), DISC("threshold.modulus=1e6")};
   struct ran all = run_case_run(&dem_engine, &cases[0], 3), drawn = run_case_run(&dem_engine, &cases[1], 3);
   assert_true(all.results.dem.broken > 20); /* otherwise the comparison tests nothing */
@@ -109,8 +104,7 @@ static void thresholds_of_large_modulus_are_all_alike(void **state) {
   release(&drawn);
 }
 
-static void solids_without_flaws_stay_whole(void **state) {
-  (void)state;
+TEST(solids_without_flaws_stay_whole) {
   const struct sph_inputs cases[] = {
       IMPACT("target.fracture=off"),
       IMPACT("target.material.weibull.k=1 1/m^3", "target.material.weibull.m=1"), /* strains of 1e4 */
@@ -127,8 +121,7 @@ static void solids_without_flaws_stay_whole(void **state) {
 
 /* Flaws that open at zero strain: the target breaks completely, also at 1 m/s, which strong flaws would bear. (Welded:
  * by method.contact: overlap so few particles would press later than in these 60 us.) */
-static void solids_of_no_strength_become_dust(void **state) {
-  (void)state;
+TEST(solids_of_no_strength_become_dust) {
 #define WEAK(...)                                                                                                      \
   IMPACT("target.material.weibull.k=1e200 1/m^3", "target.material.weibull.m=8.5", "fracture.cap=none",                \
          "fragments.dust_mass=20 g", __VA_ARGS__)
@@ -148,8 +141,7 @@ static void solids_of_no_strength_become_dust(void **state) {
 }
 
 /* alpha_0 to 1 from above: a sphere with ever fewer pores approaches the solid one; at 1 it equals it bit by bit. */
-static void pores_that_vanish_leave_the_solid(void **state) {
-  (void)state;
+TEST(pores_that_vanish_leave_the_solid) {
 #define POROUS(alpha)                                                                                                  \
   IMPACT("target.material.porosity.curve=quadratic", "target.material.porosity.distention=" alpha,                     \
          "target.material.porosity.elastic_pressure=1 MPa", "target.material.porosity.solid_pressure=200 MPa",         \
@@ -173,8 +165,7 @@ static void pores_that_vanish_leave_the_solid(void **state) {
 }
 
 /* Nothing moves: no energy, no damage, no time step that is too short. */
-static void no_speed_changes_nothing(void **state) {
-  (void)state;
+TEST(no_speed_changes_nothing) {
   const struct sph_inputs inputs = IMPACT("impact.speed=0 m/s", "impact.gap=0");
   struct ran ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
@@ -183,19 +174,4 @@ static void no_speed_changes_nothing(void **state) {
   for (int d = 0; d < 3; d++)
     assert_true(ran.fragments[0].velocity[d] == 0);
   release(&ran);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(grains_that_cannot_part_stay_one_body),
-      cmocka_unit_test(a_charge_of_nothing_breaks_nothing),
-      cmocka_unit_test(beams_of_no_strength_leave_dust),
-      cmocka_unit_test(thresholds_of_large_modulus_are_all_alike),
-      cmocka_unit_test(thresholds_of_large_modulus_have_one_value),
-      cmocka_unit_test(solids_without_flaws_stay_whole),
-      cmocka_unit_test(solids_of_no_strength_become_dust),
-      cmocka_unit_test(pores_that_vanish_leave_the_solid),
-      cmocka_unit_test(no_speed_changes_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

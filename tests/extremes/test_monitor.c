@@ -40,8 +40,7 @@ static void dem_ends(struct dem_run *run, int state, const char *const *words) {
   dem_run_free(run);
 }
 
-static void energy_from_nowhere_ends_a_run_of_grains(void **state) {
-  (void)state;
+TEST(energy_from_nowhere_ends_a_run_of_grains) {
   struct dem_run *run = disc("threshold.breaking=true");
   run->system->c.vx[VICTIM] += 400; /* a grain gets a velocity without any impact */
   dem_ends(run, OUTCOME_ENERGY,
@@ -49,24 +48,21 @@ static void energy_from_nowhere_ends_a_run_of_grains(void **state) {
                                  NULL});
 }
 
-static void grains_that_are_lost_end_a_run(void **state) {
-  (void)state;
+TEST(grains_that_are_lost_end_a_run) {
   struct dem_run *run = disc("threshold.breaking=true");
   run->system->c.vx[VICTIM] = (double)NAN;
   dem_ends(run, OUTCOME_NOT_FINITE,
            (const char *const[]){"position or velocity", "grain 7", " s", "fidelity.time_step", NULL});
 }
 
-static void grains_too_fast_for_the_step_end_a_run(void **state) {
-  (void)state;
+TEST(grains_too_fast_for_the_step_end_a_run) {
   struct dem_run *run = disc("fidelity.energy_bound=off");
   run->system->c.vx[VICTIM] = 2e4; /* 2 cm in a step */
   dem_ends(run, OUTCOME_TIME_STEP, (const char *const[]){"grain 7 moves by", "grain diameters", " s ", "below", NULL});
 }
 
 /* The run was checked for another time step: the step may become unstable after the start. */
-static void a_step_beyond_stability_ends_a_run(void **state) {
-  (void)state;
+TEST(a_step_beyond_stability_ends_a_run) {
   for (int gear = 0; gear < 2; gear++) {
     struct dem_run *run = disc(gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet");
     run->inputs.fidelity.time_step = 4 * run->stable_time_step;
@@ -103,8 +99,7 @@ static void sph_ends(struct sph_run *run, int state, const char *const *words) {
   sph_run_free(run);
 }
 
-static void energy_from_nowhere_ends_a_run_of_particles(void **state) {
-  (void)state;
+TEST(energy_from_nowhere_ends_a_run_of_particles) {
   struct sph_run *run = sphere("fidelity.precision=double");
   run->system->c.vx[VICTIM] += 5000;
   sph_ends(run, OUTCOME_ENERGY,
@@ -112,8 +107,7 @@ static void energy_from_nowhere_ends_a_run_of_particles(void **state) {
                                  "fidelity.cfl", NULL});
 }
 
-static void particles_that_are_lost_end_a_run(void **state) {
-  (void)state;
+TEST(particles_that_are_lost_end_a_run) {
   struct sph_run *run = sphere("fidelity.precision=double");
   char particle[40];
   run->system->c.energy[VICTIM] = (double)NAN;
@@ -121,8 +115,7 @@ static void particles_that_are_lost_end_a_run(void **state) {
   sph_ends(run, OUTCOME_NOT_FINITE, (const char *const[]){particle, "energy nan J/kg", " s,", "fidelity.cfl", NULL});
 }
 
-static void steps_that_collapse_end_a_run(void **state) {
-  (void)state;
+TEST(steps_that_collapse_end_a_run) {
   struct sph_run *run = sphere("fidelity.energy_bound=off");
   char particle[60];
   run->system->c.energy[VICTIM] = 1e28; /* far above any real energy: the resulting sound speed allows no step */
@@ -149,8 +142,7 @@ static struct ran finished(const struct engine_kind *kind, const void *inputs) {
   return ran;
 }
 
-static void doubts_are_in_the_result(void **state) {
-  (void)state;
+TEST(doubts_are_in_the_result) {
 #define SMALL_DISC(...)  DEM_CASE("disc-explosion", "body.diameter=8 cm", "stop.end_time=0.2 ms", __VA_ARGS__)
 #define SMALL_PLATE(...) SPH_CASE("porous-plate", "fidelity.points=40", __VA_ARGS__)
   struct dem_inputs in = SMALL_DISC("charge.energy=2 MJ/m", "fidelity.time_step=0.1 us");
@@ -171,8 +163,7 @@ static void doubts_are_in_the_result(void **state) {
 }
 
 /* A drift of 1.2 % within a bound of 2 % is accepted, and reported. */
-static void drift_within_a_wide_bound_is_flagged(void **state) {
-  (void)state;
+TEST(drift_within_a_wide_bound_is_flagged) {
   struct dem_run *run = disc("fidelity.energy_bound=50 %");
   struct outcome outcome;
   struct dem_results results;
@@ -189,8 +180,7 @@ static void drift_within_a_wide_bound_is_flagged(void **state) {
 
 /* The closed ledger books what contacts give as work, so a drift does not show it: the printed law is no gradient, and
  * contacts that wait for a break begin at full force. */
-static void energy_that_contacts_give_is_flagged(void **state) {
-  (void)state;
+TEST(energy_that_contacts_give_is_flagged) {
   const struct {
     const char *law, *bonded, *words;
   } cases[] = {
@@ -210,8 +200,7 @@ static void energy_that_contacts_give_is_flagged(void **state) {
 }
 
 /* Particles at rest that stand farther apart than the search for fragments looks: a whole body would count as dust. */
-static void links_too_short_for_the_lattice_are_flagged(void **state) {
-  (void)state;
+TEST(links_too_short_for_the_lattice_are_flagged) {
 #define AT_REST(...)                                                                                                   \
   SPH_CASE("basalt-sphere", "fidelity.particles=60", "fidelity.projectile_spacing=1", "impact.speed=0 m/s",            \
            "impact.mass=20 g", "stop.end_time=1 us", "fragments.static_strength=off", __VA_ARGS__)
@@ -230,8 +219,7 @@ static void links_too_short_for_the_lattice_are_flagged(void **state) {
 }
 
 /* A tube whose wall is thinner than the particles are apart: its particles have gaps, whatever the lattice. */
-static void bodies_thinner_than_their_particles_are_flagged(void **state) {
-  (void)state;
+TEST(bodies_thinner_than_their_particles_are_flagged) {
 #define TUBE(...)                                                                                                      \
   SPH_CASE("elastic-bar", "fidelity.particles=190", "target.radius=0.89 mm", "target.length=8 mm",                     \
            "vibration.speed=1 mm/s", "stop.end_time=1 us", __VA_ARGS__)
@@ -244,8 +232,7 @@ static void bodies_thinner_than_their_particles_are_flagged(void **state) {
 }
 
 /* A short smoothing length without the gradient correction: sums on a lattice are too small, and the shock too weak. */
-static void short_smoothing_lengths_are_flagged(void **state) {
-  (void)state;
+TEST(short_smoothing_lengths_are_flagged) {
   const struct {
     const char *smoothing, *correction, *words;
     double least, most; /* error of the shock's pressure; measured 0.2 to 2 % where it is safe */
@@ -266,8 +253,7 @@ static void short_smoothing_lengths_are_flagged(void **state) {
 }
 
 /* A wave that has left the plate has no place, and the speed of a front through its last places means nothing. */
-static void waves_at_the_far_side_are_flagged(void **state) {
-  (void)state;
+TEST(waves_at_the_far_side_are_flagged) {
   const struct sph_inputs early = SMALL_PLATE("stop.end_time=3 us"), late = SMALL_PLATE("stop.end_time=9 us");
   const struct ran good = finished(&sph_engine, &early), bad = finished(&sph_engine, &late);
   assert_null(strstr(good.outcome.warnings, "arrival"));
@@ -282,8 +268,7 @@ static void waves_at_the_far_side_are_flagged(void **state) {
 }
 
 /* The longest message of a run fits with its remedy. */
-static void long_messages_keep_their_remedy(void **state) {
-  (void)state;
+TEST(long_messages_keep_their_remedy) {
   const struct sph_inputs in = SPH_CASE("basalt-sphere", "fidelity.particles=100", "fidelity.projectile_spacing=0.5",
                                         "impact.mass=2 g", "fidelity.energy_bound=1.23456e-5 %");
   struct sph_run *run = NULL;
@@ -299,8 +284,7 @@ static void long_messages_keep_their_remedy(void **state) {
 
 /* Bodies of very different density: the heavy particles' forces are too strong for the time step of the light ones;
  * volume weights remove the problem. */
-static void bodies_of_unlike_density_need_volume_weights(void **state) {
-  (void)state;
+TEST(bodies_of_unlike_density_need_volume_weights) {
 #define LIGHT(...)                                                                                                     \
   SPH_CASE("basalt-sphere", "fidelity.particles=200", "fidelity.projectile_spacing=0.8", "stop.end_time=20 us",        \
            "target.material.density=20 kg/m^3", "projectile.material.name=basalt", "impact.projectile=size",           \
@@ -319,8 +303,7 @@ static void bodies_of_unlike_density_need_volume_weights(void **state) {
 /* ---- cost ---- */
 
 /* Processor time of the checks of the energy balance, over that of the steps. */
-static void the_monitor_is_cheap(void **state) {
-  (void)state;
+TEST(the_monitor_is_cheap) {
   const int steps = run_case_full() ? 3000 : 1000;
   struct dem_run *run = disc(run_case_full() ? "body.diameter=40 cm" : "stop.end_time=1 s");
   double begin = clock_cpu_s();
@@ -346,27 +329,4 @@ static void the_monitor_is_cheap(void **state) {
   print_message("monitor: %.2f %% of a run of dem, %.2f %% of sph\n", 100 * dem, 100 * sph);
   const double most = run_case_full() ? 0.02 : 0.05; /* short times are noisy on a busy machine */
   assert_true(dem < most && sph < most);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(energy_from_nowhere_ends_a_run_of_grains),
-      cmocka_unit_test(grains_that_are_lost_end_a_run),
-      cmocka_unit_test(grains_too_fast_for_the_step_end_a_run),
-      cmocka_unit_test(a_step_beyond_stability_ends_a_run),
-      cmocka_unit_test(energy_from_nowhere_ends_a_run_of_particles),
-      cmocka_unit_test(particles_that_are_lost_end_a_run),
-      cmocka_unit_test(steps_that_collapse_end_a_run),
-      cmocka_unit_test(doubts_are_in_the_result),
-      cmocka_unit_test(drift_within_a_wide_bound_is_flagged),
-      cmocka_unit_test(energy_that_contacts_give_is_flagged),
-      cmocka_unit_test(links_too_short_for_the_lattice_are_flagged),
-      cmocka_unit_test(bodies_thinner_than_their_particles_are_flagged),
-      cmocka_unit_test(short_smoothing_lengths_are_flagged),
-      cmocka_unit_test(waves_at_the_far_side_are_flagged),
-      cmocka_unit_test(long_messages_keep_their_remedy),
-      cmocka_unit_test(bodies_of_unlike_density_need_volume_weights),
-      cmocka_unit_test(the_monitor_is_cheap),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,8 +119,7 @@ static struct store *open_store(const char *path) {
 }
 
 /* A store is made, closed, continued, and another one is merged into it. */
-static void stores_keep_what_is_committed(void **state) {
-  (void)state;
+TEST(stores_keep_what_is_committed) {
   int64_t added, differing;
   begin();
   struct store *store = open_store("power-now/a.db");
@@ -150,8 +149,7 @@ static void look_at_copy(size_t op) {
   if (least >= 0)
     assert_int_equal(runs_after("power-after/copy.db"), least);
 }
-static void a_copy_is_kept(void **state) {
-  (void)state;
+TEST(a_copy_is_kept) {
   begin();
   struct store *store = open_store("power-now/a.db");
   add_runs(store, "a.db", 0, 100);
@@ -163,8 +161,7 @@ static void a_copy_is_kept(void **state) {
 }
 
 /* A commit at least every second: what was added longer ago is there. One commit may be under way at the cut. */
-static void at_most_the_last_second_is_lost(void **state) {
-  (void)state;
+TEST(at_most_the_last_second_is_lost) {
   enum { RUNS = 120 };
   static double added[RUNS];
   struct fixture_inputs inputs;
@@ -228,8 +225,7 @@ static void look_at_fields(size_t op) {
   sqlite3_close(db);
 }
 
-static void fields_are_kept_before_their_row(void **state) {
-  (void)state;
+TEST(fields_are_kept_before_their_row) {
   struct play play = {.slots = 2};
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(2, 2, 8);
@@ -259,8 +255,7 @@ static void look_at_restart(size_t op) {
 }
 
 /* Each restart file replaces the one before. */
-static void a_restart_file_is_kept(void **state) {
-  (void)state;
+TEST(a_restart_file_is_kept) {
   begin();
   for (int version = 1; version <= 5; version++) {
     unsigned char bytes[5000];
@@ -270,13 +265,4 @@ static void a_restart_file_is_kept(void **state) {
   }
   disk_end();
   cut_everywhere(200, look_at_restart);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stores_keep_what_is_committed),   cmocka_unit_test(a_copy_is_kept),
-      cmocka_unit_test(at_most_the_last_second_is_lost), cmocka_unit_test(fields_are_kept_before_their_row),
-      cmocka_unit_test(a_restart_file_is_kept),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,8 +42,7 @@ static double whole(const char *path) {
   return runs;
 }
 
-static void killed_writer_loses_at_most_its_batch(void **state) {
-  (void)state;
+TEST(killed_writer_loses_at_most_its_batch) {
   char path[64], reference[64];
   int kills = getenv("CLAST_FULL") ? 250 : SANITIZED ? 10 : 25;
   int64_t *added = mmap(NULL, sizeof *added, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -146,15 +145,13 @@ static void widen_files(void) {
   setrlimit(RLIMIT_FSIZE, &wide);
 }
 
-static void file_size_limit_loses_nothing_committed(void **state) {
-  (void)state;
+TEST(file_size_limit_loses_nothing_committed) {
   char path[64];
   run_out_of_room(fixture_path(path, "narrow"), narrow_files, widen_files);
 }
 
 /* Not even the tables fit. The remaining file must not look like a store that was copied without its -wal file. */
-static void no_room_for_a_table_leaves_no_file(void **state) {
-  (void)state;
+TEST(no_room_for_a_table_leaves_no_file) {
   char path[64];
   struct store *store = NULL;
   fixture_path(path, "no-room");
@@ -175,8 +172,7 @@ static void copy_file(const char *from, const char *to) {
 }
 
 /* A copy without the -wal file is refused, also if the store had runs already when its writer opened it. */
-static void copies_without_their_log_are_refused(void **state) {
-  (void)state;
+TEST(copies_without_their_log_are_refused) {
   char path[64], copy[64];
   struct store *store = NULL;
   fixture_path(copy, "log-copy");
@@ -196,8 +192,7 @@ static void enlarge_disk(void) {
   assert_int_equal(mount("tmpfs", disk, "tmpfs", MS_REMOUNT, "size=64m"), 0);
 }
 
-static void full_disk_loses_nothing_committed(void **state) {
-  (void)state;
+TEST(full_disk_loses_nothing_committed) {
   mkdir(disk, 0777);
   if (mount("tmpfs", disk, "tmpfs", 0, "size=5m") != 0) { /* needs root; the test above covers the rest */
     print_message("no right to mount a small disk: skipped\n");
@@ -207,8 +202,7 @@ static void full_disk_loses_nothing_committed(void **state) {
   assert_int_equal(umount(disk), 0);
 }
 
-static void without_permission(void **state) {
-  (void)state;
+TEST(without_permission) {
   char closed[] = "/tmp/clast-store-closed-XXXXXX"; /* the current folder may lie where no other user may go */
   char path[64], fresh[64], copy[64];
   assert_non_null(mkdtemp(closed));
@@ -251,8 +245,7 @@ static void without_permission(void **state) {
 
 /* A reader is in the middle of a query all the time: the writer neither waits nor fails, and the reader sees the state
  * at the query's start. */
-static void reader_never_blocks_the_writer(void **state) {
-  (void)state;
+TEST(reader_never_blocks_the_writer) {
   char path[64];
   struct store *writer = NULL, *reader = NULL;
   OK(fill(fixture_path(path, "stays"), 50, &error));
@@ -282,8 +275,7 @@ static void reader_never_blocks_the_writer(void **state) {
 
 /* After a failed write, the store refuses further runs with an error; the runs of the lost batch do not count as
  * stored. */
-static void after_a_failure_nothing_is_pretended(void **state) {
-  (void)state;
+TEST(after_a_failure_nothing_is_pretended) {
   char path[64];
   struct store *store = NULL;
   struct fixture_inputs inputs;
@@ -311,18 +303,4 @@ static void after_a_failure_nothing_is_pretended(void **state) {
   assert_non_null(strstr(error.message, "earlier write failed"));
   store_close(store, NULL);
   assert_near(whole(path), 0, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(killed_writer_loses_at_most_its_batch),
-      cmocka_unit_test(file_size_limit_loses_nothing_committed),
-      cmocka_unit_test(no_room_for_a_table_leaves_no_file),
-      cmocka_unit_test(copies_without_their_log_are_refused),
-      cmocka_unit_test(full_disk_loses_nothing_committed),
-      cmocka_unit_test(without_permission),
-      cmocka_unit_test(reader_never_blocks_the_writer),
-      cmocka_unit_test(after_a_failure_nothing_is_pretended),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -84,8 +84,7 @@ static bool check_is_content(const char *path) {
   return result == STATUS_OK;
 }
 
-static void every_flipped_bit_is_found(void **state) {
-  (void)state;
+TEST(every_flipped_bit_is_found) {
   char path[64];
   struct store_file file = whole_store(path);
   char *whole = content(path);
@@ -115,8 +114,7 @@ static void every_flipped_bit_is_found(void **state) {
 }
 
 /* The same for the rows alone: SQL changes one bit of each value of a run. */
-static void every_value_of_a_run_is_found(void **state) {
-  (void)state;
+TEST(every_value_of_a_run_is_found) {
   static const char *const changes[] = {
       "UPDATE run SET largest_fraction = largest_fraction * (1 + 2.3e-16) WHERE run_id = 3",
       "UPDATE run SET kinetic_energy_share = 0 WHERE run_id = 3",
@@ -172,8 +170,7 @@ static void merge_refuses(const char *change) {
   free(file.bytes);
 }
 
-static void merge_refuses_a_damaged_run(void **state) {
-  (void)state;
+TEST(merge_refuses_a_damaged_run) {
   merge_refuses("UPDATE run SET time = time * 1.5 WHERE run_id = 7");
   merge_refuses("UPDATE spectrum SET mass = mass * (1 + 2.3e-16) WHERE run_id = 7");
   merge_refuses("UPDATE spectrum SET count = count + 1 WHERE run_id = 7");
@@ -181,8 +178,7 @@ static void merge_refuses_a_damaged_run(void **state) {
   merge_refuses("INSERT INTO spectrum (run_id, bin, count, mass) VALUES (7, 30, 1, 1000)");
 }
 
-static void one_damaged_run_is_told_from_whole_ones(void **state) {
-  (void)state;
+TEST(one_damaged_run_is_told_from_whole_ones) {
   char path[64];
   struct store_file file = whole_store(path);
   struct store *store = NULL;
@@ -198,14 +194,4 @@ static void one_damaged_run_is_told_from_whole_ones(void **state) {
   assert_false(whole);
   OK(store_close(store, &error));
   free(file.bytes);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_flipped_bit_is_found),
-      cmocka_unit_test(every_value_of_a_run_is_found),
-      cmocka_unit_test(merge_refuses_a_damaged_run),
-      cmocka_unit_test(one_damaged_run_is_told_from_whole_ones),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Stores prepared by an attacker: their contents are only data. Each is refused, the message names the foreign objects,
  * and none of their SQL is run when the store is read, written or merged. */
+#define CHECK_OWN_MAIN
 #include <sqlite3.h>
 
 #include <sys/stat.h>
@@ -53,8 +54,7 @@ static int make_target(void **state) {
   return 0;
 }
 
-static void target_is_sound(void **state) {
-  (void)state;
+TEST(target_is_sound) {
   OK(store_check(target, NULL, NULL, &error));
   OK(store_close(target, &error));
 }
@@ -72,8 +72,7 @@ static void refused(const char *path, const char *name) {
 }
 
 /* A trigger that deletes every run: a campaign would compute and store nothing. */
-static void triggers_are_refused(void **state) {
-  (void)state;
+TEST(triggers_are_refused) {
   char path[64];
   change(populated(path, "hostile-trigger"),
          "CREATE TRIGGER swallow AFTER INSERT ON run BEGIN DELETE FROM run WHERE run_id = new.run_id; END");
@@ -86,8 +85,7 @@ static void triggers_are_refused(void **state) {
 }
 
 /* A view of another name is refused. The file's versions of our own views are never run: the reader makes its own. */
-static void views_are_refused_or_replaced(void **state) {
-  (void)state;
+TEST(views_are_refused_or_replaced) {
   char path[64];
   struct store *store = NULL;
   change(populated(path, "hostile-view"), "CREATE VIEW more AS SELECT * FROM run");
@@ -106,8 +104,7 @@ static void views_are_refused_or_replaced(void **state) {
   sqlite3_close(db);
 }
 
-static void virtual_tables_are_refused(void **state) {
-  (void)state;
+TEST(virtual_tables_are_refused) {
   char path[64];
   change(populated(path, "hostile-virtual"), "CREATE VIRTUAL TABLE result_x USING fts5(run_id)");
   refused(path, "result_x");
@@ -115,8 +112,7 @@ static void virtual_tables_are_refused(void **state) {
 
 /* The text of a table holds a second statement: SQLite reads only the first; a program that executes the text executes
  * both. */
-static void second_statement_is_never_run(void **state) {
-  (void)state;
+TEST(second_statement_is_never_run) {
   char path[64], victim[64];
   struct store *store = NULL;
   int64_t added = 0, differing = 0;
@@ -139,8 +135,7 @@ static void second_statement_is_never_run(void **state) {
 }
 
 /* Names of a table, a column and an axis that contain a closing quotation mark. */
-static void names_are_names(void **state) {
-  (void)state;
+TEST(names_are_names) {
   char path[64];
   change(populated(path, "hostile-names"),
          "CREATE TABLE \"result_x\"\" AS y; DROP TABLE run; --\" (run_id INTEGER PRIMARY KEY) STRICT");
@@ -158,8 +153,7 @@ static void names_are_names(void **state) {
   refused(path, "the column of axis");
 }
 
-static void generated_columns_are_refused(void **state) {
-  (void)state;
+TEST(generated_columns_are_refused) {
   char path[64];
   change(populated(path, "hostile-generated"), "ALTER TABLE run ADD COLUMN made REAL AS (total_mass * 2) VIRTUAL");
   refused(path, "made");
@@ -174,8 +168,7 @@ static void generated_columns_are_refused(void **state) {
   refused(path, "counts");
 }
 
-static void index_expressions_are_refused(void **state) {
-  (void)state;
+TEST(index_expressions_are_refused) {
   char path[64];
   change(populated(path, "hostile-index"), "CREATE INDEX dear ON run (hex(zeroblob(rank)))");
   refused(path, "dear");
@@ -187,8 +180,7 @@ static void index_expressions_are_refused(void **state) {
 }
 
 /* SQLite cannot attach a file of another encoding: a merge from it, and into it, would fail in the middle. */
-static void utf16_is_refused(void **state) {
-  (void)state;
+TEST(utf16_is_refused) {
   char path[64], text[200];
   sqlite3 *db = NULL;
   snprintf(text, sizeof text,
@@ -202,8 +194,7 @@ static void utf16_is_refused(void **state) {
 }
 
 /* Opening a pipe blocks until another process writes to it. */
-static void pipes_and_devices_are_no_stores(void **state) {
-  (void)state;
+TEST(pipes_and_devices_are_no_stores) {
   char pipe[64];
   struct store *store = NULL;
   assert_int_equal(mkfifo(fixture_path(pipe, "hostile-pipe"), 0600), 0);
@@ -229,8 +220,7 @@ static void pipes_and_devices_are_no_stores(void **state) {
 }
 
 /* The journal of another store is not read into this one; the message says why it cannot be read. */
-static void journal_of_another_store_is_named(void **state) {
-  (void)state;
+TEST(journal_of_another_store_is_named) {
   char path[64], other[64], text[300];
   struct store *store = NULL;
   sqlite3 *db = NULL;
@@ -256,8 +246,7 @@ static void journal_of_another_store_is_named(void **state) {
 }
 
 /* A journal with the name of a super-journal: SQLite deletes the file of that name after the rollback. */
-static void journal_deletes_nothing(void **state) {
-  (void)state;
+TEST(journal_deletes_nothing) {
   static const unsigned char magic[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
   char path[64], journal[80], victim[64];
   populated(path, "hostile-super");
@@ -293,8 +282,7 @@ static void collect(void *context, const char *text) {
 }
 
 /* Rows of other types and sizes than the schema says: the file's bytes decide, not its text. */
-static void huge_and_odd_rows_are_found(void **state) {
-  (void)state;
+TEST(huge_and_odd_rows_are_found) {
   static const char *const odd[] = {
       "UPDATE fragment_mass SET masses = (WITH RECURSIVE n (i, t) AS (SELECT 1, 'ä' UNION ALL SELECT i + 1, t || t "
       "FROM "
@@ -378,8 +366,7 @@ static void spoil(const char *path, uint64_t round) {
 
 /* Pages of noise: an error or a problem, never a crash. Rows may go into another store only if check finds nothing
  * because the noise hit no row; these rows are then correct. */
-static void corrupt_pages_are_errors(void **state) {
-  (void)state;
+TEST(corrupt_pages_are_errors) {
   char path[64];
   populated(path, "hostile-pages");
   char *whole = dump(path);
@@ -470,8 +457,7 @@ static void runs_without_end(const char *path) {
 }
 
 /* Pages that refer to each other make a statement endless. The merge ends as soon as the pages have been checked. */
-static void endless_pages_end_a_merge(void **state) {
-  (void)state;
+TEST(endless_pages_end_a_merge) {
   char path[64], found[8000] = "";
   struct store *store = NULL;
   int64_t added = 0, differing = 0;
@@ -484,22 +470,5 @@ static void endless_pages_end_a_merge(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(triggers_are_refused),
-      cmocka_unit_test(views_are_refused_or_replaced),
-      cmocka_unit_test(virtual_tables_are_refused),
-      cmocka_unit_test(second_statement_is_never_run),
-      cmocka_unit_test(names_are_names),
-      cmocka_unit_test(generated_columns_are_refused),
-      cmocka_unit_test(index_expressions_are_refused),
-      cmocka_unit_test(utf16_is_refused),
-      cmocka_unit_test(pipes_and_devices_are_no_stores),
-      cmocka_unit_test(journal_of_another_store_is_named),
-      cmocka_unit_test(journal_deletes_nothing),
-      cmocka_unit_test(huge_and_odd_rows_are_found),
-      cmocka_unit_test(corrupt_pages_are_errors),
-      cmocka_unit_test(endless_pages_end_a_merge),
-      cmocka_unit_test(target_is_sound),
-  };
-  return cmocka_run_group_tests(tests, make_target, NULL);
+  return check_run(make_target, NULL);
 }

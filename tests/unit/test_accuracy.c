@@ -13,8 +13,7 @@
 static struct error error;
 static char path[64];
 
-static void seeds_for_a_margin(void **state) {
-  (void)state;
+TEST(seeds_for_a_margin) {
   /* t(n - 1) s/sqrt n at n = 10: 2.262157/3.162278 = 0.715357 */
   assert_int_equal(accuracy_seeds(0.5, 1, 0.71536, false), 10);
   assert_int_equal(accuracy_seeds(0.5, 1, 0.71535, false), 11);
@@ -31,8 +30,7 @@ static void seeds_for_a_margin(void **state) {
 }
 
 /* A table shows no wider interval than was reckoned with: that of a share. Equal runs have their bound. */
-static void seeds_of_a_share(void **state) {
-  (void)state;
+TEST(seeds_of_a_share) {
   for (double mean = 0.9; mean < 1; mean += 0.03) {
     const size_t n = (size_t)accuracy_seeds(mean, 0.1, 0.02, true);
     struct sample_summary of = {.n = n, .mean = mean, .standard_deviation = 0.1};
@@ -124,8 +122,7 @@ static void store_study(const struct campaign *campaign, bool open) {
 
 #define HEAD "name: t\nscene: disc-explosion\n"
 
-static void the_cheapest_that_reaches_it(void **state) {
-  (void)state;
+TEST(the_cheapest_that_reaches_it) {
   struct accuracy accuracy;
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.06}\n");
   store_study(campaign, false);
@@ -163,8 +160,7 @@ static void the_cheapest_that_reaches_it(void **state) {
 }
 
 /* A law goes on beyond the finest level: with order 0.5 at least, at a cost by the engine's measure of work. */
-static void finer_than_any_level(void **state) {
-  (void)state;
+TEST(finer_than_any_level) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
@@ -191,8 +187,7 @@ static void finer_than_any_level(void **state) {
 /* `within: 5 %` is 5 % of the mean that a setting gives, not of that with the scene's own ones. The mean of the finer
  * level is three times as large, so that its error is small enough; where the own mean is the larger one, the cheaper
  * level with the same error is not near enough. */
-static void a_share_is_one_of_the_settings_own_mean(void **state) {
-  (void)state;
+TEST(a_share_is_one_of_the_settings_own_mean) {
   static const struct {
     struct level levels[2];
     double means[2];
@@ -217,8 +212,7 @@ static void a_share_is_one_of_the_settings_own_mean(void **state) {
 }
 
 /* No error of a share is larger than its distance from the farther end, here 0.7: also of settings that nothing ran. */
-static void no_error_is_larger_than_a_share_can_move(void **state) {
-  (void)state;
+TEST(no_error_is_larger_than_a_share_can_move) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
@@ -241,8 +235,7 @@ static void no_error_is_larger_than_a_share_can_move(void **state) {
 
 /* The scene with a step of 5e-7 s has a study of finer grains, and its level 0.00759 m is the named settings
  * `reference` of the scene with 1e-6 s. The study with the finest level counts, also there. */
-static void the_study_with_the_finest_level_counts(void **state) {
-  (void)state;
+TEST(the_study_with_the_finest_level_counts) {
   struct campaign *first = campaign_of(HEAD "accuracy: {within: 0.02}\n"),
                   *second = campaign_of(HEAD "set: {fidelity.time_step: 0.5 us}\naccuracy: {within: 0.02}\n");
   struct store *store = NULL;
@@ -274,8 +267,7 @@ static void the_study_with_the_finest_level_counts(void **state) {
 /* The advice names the knob that leaves most of the smallest error, which is one with the scene's own grains (the finer
  * ones have too few results), and what it leaves there. What may lie beyond the levels of the time step, 0.03/(sqrt 2 -
  * 1) = 0.07, counts to it. */
-static void the_knob_that_leaves_most_is_advised(void **state) {
-  (void)state;
+TEST(the_knob_that_leaves_most_is_advised) {
   static const struct {
     double grains;
     const char *advice;
@@ -306,8 +298,7 @@ static void the_knob_that_leaves_most_is_advised(void **state) {
 
 /* No limit is seen, and the levels differ little: the slowest law, of order 0.5, leaves at the finest level the larger
  * of 0.012/(sqrt 4 - 1) and 0.004/(sqrt 2 - 1) = 0.0097. */
-static void levels_that_differ_little_are_enough(void **state) {
-  (void)state;
+TEST(levels_that_differ_little_are_enough) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
@@ -332,8 +323,7 @@ static void levels_that_differ_little_are_enough(void **state) {
 
 /* A study without time for the scene's own level, which is finer than all: the slowest law bounds what it may change,
  * too. Coarser than all it may be anywhere. */
-static void an_own_level_that_did_not_run(void **state) {
-  (void)state;
+TEST(an_own_level_that_did_not_run) {
   static const struct level levels[2][5] = {{{"8e-6", 0.012, 1e-4, 5, false, true, 8e-6},
                                              {"4e-6", 0.004, 1e-4, 10, false, true, 4e-6},
                                              {"2e-6", 0.004, 1e-4, 20, false, true, 2e-6},
@@ -361,8 +351,7 @@ static void an_own_level_that_did_not_run(void **state) {
 
 /* A larger error is offered where it would be accepted. A knob of two levels has no known rest, which stops the answer
  * only if it moves the result. */
-static void what_is_offered_is_accepted(void **state) {
-  (void)state;
+TEST(what_is_offered_is_accepted) {
   static const double moves[] = {1e-5, 0.02};
   for (size_t i = 0; i < 2; i++) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
@@ -390,8 +379,7 @@ static void what_is_offered_is_accepted(void **state) {
 /* Grains finer than any level, with the same time step: those whose step is above a quarter of the longest stable one
  * (engine/dem/scene/conditions.c) would be marked, so they are no options. With 0.0056 m it is a
  * fifth. */
-static void a_finer_setting_that_would_be_marked_is_none(void **state) {
-  (void)state;
+TEST(a_finer_setting_that_would_be_marked_is_none) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
@@ -418,8 +406,7 @@ static void a_finer_setting_that_would_be_marked_is_none(void **state) {
 
 /* A later study of the grains lacks the scene's own: no setting with these grains is known to be accurate, though the
  * time step is, and none is told a smaller error than the levels of grains have. With the own level all is known. */
-static void a_study_without_the_scenes_own_level(void **state) {
-  (void)state;
+TEST(a_study_without_the_scenes_own_level) {
   for (int own = 0; own < 2; own++) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.1}\n");
     struct store *store = NULL;
@@ -468,8 +455,7 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
 
 /* Half widths of a mean 0.3 are 1.025 times t(n - 1) 0.02/sqrt n: n = 3 0.0497, 4 0.0318, 6 0.0210, 8 0.0167, 16
  * 0.0107, 24 0.00845, 48 0.00581 (sums below without the 1.025). */
-static void the_least_error_in_a_time(void **state) {
-  (void)state;
+TEST(the_least_error_in_a_time) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
   struct accuracy accuracy;
   store_study(campaign, false);
@@ -498,8 +484,7 @@ static void the_least_error_in_a_time(void **state) {
 
 /* Settings without a bound of their error count by its number, as all others: more time gives no larger error, and half
  * and twice of the time tell what these times give. */
-static void more_time_gives_no_larger_error(void **state) {
-  (void)state;
+TEST(more_time_gives_no_larger_error) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
   struct store *store = NULL;
   assert_int_equal(store_open_writer(fixture_path(path, "more-time"), &store, NULL, 0, &error), STATUS_OK);
@@ -523,8 +508,7 @@ static void more_time_gives_no_larger_error(void **state) {
   campaign_free(campaign);
 }
 
-static void a_varied_input_is_no_choice(void **state) {
-  (void)state;
+TEST(a_varied_input_is_no_choice) {
   struct accuracy accuracy;
   struct campaign *campaign = campaign_of(HEAD
                                           "vary: {fidelity.time_step: [1e-6 s, 5e-7 s]}\naccuracy: {within: 0.06}\n");
@@ -536,8 +520,7 @@ static void a_varied_input_is_no_choice(void **state) {
   campaign_free(campaign);
 }
 
-static void without_a_study_the_command_is_named(void **state) {
-  (void)state;
+TEST(without_a_study_the_command_is_named) {
   struct campaign *campaign = campaign_of(HEAD "set: {contact.friction: 0.3}\naccuracy: {within: 0.06}\n");
   assert_int_equal(accuracy_settle(campaign, "t.yaml", "no-such.db", ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "clast converge t.yaml --quantity largest_fraction`"));
@@ -561,26 +544,4 @@ static void without_a_study_the_command_is_named(void **state) {
     assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
     assert_non_null(strstr(error.message, "accuracy"));
   }
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
-                                     cmocka_unit_test(seeds_of_a_share),
-                                     cmocka_unit_test(the_cheapest_that_reaches_it),
-                                     cmocka_unit_test(finer_than_any_level),
-                                     cmocka_unit_test(a_share_is_one_of_the_settings_own_mean),
-                                     cmocka_unit_test(no_error_is_larger_than_a_share_can_move),
-                                     cmocka_unit_test(the_study_with_the_finest_level_counts),
-                                     cmocka_unit_test(the_knob_that_leaves_most_is_advised),
-                                     cmocka_unit_test(levels_that_differ_little_are_enough),
-                                     cmocka_unit_test(an_own_level_that_did_not_run),
-                                     cmocka_unit_test(what_is_offered_is_accepted),
-                                     cmocka_unit_test(a_finer_setting_that_would_be_marked_is_none),
-                                     cmocka_unit_test(a_study_without_the_scenes_own_level),
-                                     cmocka_unit_test(the_least_error_in_a_time),
-                                     cmocka_unit_test(more_time_gives_no_larger_error),
-                                     cmocka_unit_test(a_varied_input_is_no_choice),
-                                     cmocka_unit_test(without_a_study_the_command_is_named)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,8 +39,7 @@ static struct design_axis law(int kind, double a, double b, double lower, double
 }
 
 /* The levels are the numbers that a person writes, to the last bit. */
-static void spaced_levels_are_written_numbers(void **state) {
-  (void)state;
+TEST(spaced_levels_are_written_numbers) {
   static const struct {
     const char *from, *to, *si;
     size_t n;
@@ -70,8 +69,7 @@ static void spaced_levels_are_written_numbers(void **state) {
     }
 }
 
-static void grid_walks_the_last_axis_fastest(void **state) {
-  (void)state;
+TEST(grid_walks_the_last_axis_fastest) {
   struct design_axis axes[3] = {levels(levels_a, 3), levels(levels_b, 2), law(DESIGN_AXIS_LINKED, 2, 0.5, 0, 0)};
   struct design *design;
   struct error error = {0};
@@ -89,8 +87,7 @@ static void grid_walks_the_last_axis_fastest(void **state) {
   design_free(design);
 }
 
-static void list_goes_in_step_and_links_by_level(void **state) {
-  (void)state;
+TEST(list_goes_in_step_and_links_by_level) {
   struct design_axis axes[3] = {levels(levels_a, 3), levels(levels_c, 3), levels(levels_c, 3)};
   struct design *design;
   struct error error = {0};
@@ -110,8 +107,7 @@ static void list_goes_in_step_and_links_by_level(void **state) {
   assert_non_null(strstr(error.message, "2 values, but vary.x has 3"));
 }
 
-static void refusals_say_the_remedy(void **state) {
-  (void)state;
+TEST(refusals_say_the_remedy) {
   struct error error = {0};
   struct design *design;
   struct design_axis uniform = law(DESIGN_AXIS_UNIFORM, 0, 1, -HUGE_VAL, HUGE_VAL);
@@ -137,8 +133,7 @@ static void refusals_say_the_remedy(void **state) {
 }
 
 /* Every n, especially small ones: an order of 0..n-1; over seeds each number is equally often in each place. */
-static void latin_orders_are_permutations_and_even(void **state) {
-  (void)state;
+TEST(latin_orders_are_permutations_and_even) {
   for (uint64_t n = 1; n <= 300; n += n < 20 ? 1 : 37) {
     char seen[300] = {0};
     for (uint64_t i = 0; i < n; i++) {
@@ -162,8 +157,7 @@ static void latin_orders_are_permutations_and_even(void **state) {
   }
 }
 
-static void latin_projections_are_stratified(void **state) {
-  (void)state;
+TEST(latin_projections_are_stratified) {
   enum { N = 97, D = 5 };
   for (size_t d = 0; d < D; d++) {
     int strata[N] = {0};
@@ -185,8 +179,7 @@ static void latin_projections_are_stratified(void **state) {
   assert_true(fabs(product) < 4 / sqrt(N - 1.0));
 }
 
-static void sobol_is_gsl_with_origin_and_shift(void **state) {
-  (void)state;
+TEST(sobol_is_gsl_with_origin_and_shift) {
   enum { D = 40, N = 1024 };
   struct design_sobol *sobol, *again, *other;
   struct error error;
@@ -221,8 +214,7 @@ static void sobol_is_gsl_with_origin_and_shift(void **state) {
   design_sobol_free(other);
 }
 
-static void quantiles_are_the_laws(void **state) {
-  (void)state;
+TEST(quantiles_are_the_laws) {
   struct field_value value;
   struct design_axis normal = law(DESIGN_AXIS_NORMAL, 3, 2, -HUGE_VAL, HUGE_VAL);
   design_axis_quantile(&normal, 0.975, &value);
@@ -239,8 +231,7 @@ static void quantiles_are_the_laws(void **state) {
   assert_true(isfinite(value.number));
 }
 
-static void shares_are_the_inverse_of_quantiles(void **state) {
-  (void)state;
+TEST(shares_are_the_inverse_of_quantiles) {
   const struct design_axis axes[] = {law(DESIGN_AXIS_UNIFORM, -2, 5, -HUGE_VAL, HUGE_VAL),
                                      law(DESIGN_AXIS_LOG_UNIFORM, 1e33, 1e37, -HUGE_VAL, HUGE_VAL),
                                      law(DESIGN_AXIS_NORMAL, 3, 2, 2, 4), law(DESIGN_AXIS_NORMAL, 0, 1, 5, 6),
@@ -261,8 +252,7 @@ static void shares_are_the_inverse_of_quantiles(void **state) {
 
 /* Mean and variance of a truncated law against its closed form, by 4096 midpoints of u (error of the midpoint rule on a
  * smooth bounded quantile function: below 1e-5 of the width); never a value outside. */
-static void truncated_laws_stay_inside(void **state) {
-  (void)state;
+TEST(truncated_laws_stay_inside) {
   const double cases[][4] = {{3, 2, 2, 4}, {0, 1, 5, 6}, {0, 1, -6, -5}, {0, 1, 36, 37}, {1, 0.5, 0.9, HUGE_VAL}};
   for (size_t c = 0; c < 5; c++) {
     struct design_axis axis = law(DESIGN_AXIS_NORMAL, cases[c][0], cases[c][1], cases[c][2], cases[c][3]);
@@ -306,8 +296,7 @@ static void truncated_laws_stay_inside(void **state) {
     assert_int_equal(counts[n], 1000);
 }
 
-static void random_points_are_uniform(void **state) {
-  (void)state;
+TEST(random_points_are_uniform) {
   enum { N = 20000, BINS = 50 };
   double chi = 0, counts[BINS] = {0}, product = 0;
   for (uint64_t i = 0; i < N; i++) {
@@ -323,8 +312,7 @@ static void random_points_are_uniform(void **state) {
 
 /* The first of a million points comes at once, and the last is there too. The time shows that the points are not all
  * stored in memory. */
-static void a_million_points_are_a_counter(void **state) {
-  (void)state;
+TEST(a_million_points_are_a_counter) {
   struct design_axis axes[3] = {law(DESIGN_AXIS_UNIFORM, 0, 1, -HUGE_VAL, HUGE_VAL),
                                 law(DESIGN_AXIS_LOG_UNIFORM, 1, 10, -HUGE_VAL, HUGE_VAL), levels(levels_a, 3)};
   for (int kind = DESIGN_RANDOM; kind <= DESIGN_SOBOL; kind++) {
@@ -338,22 +326,4 @@ static void a_million_points_are_a_counter(void **state) {
     assert_int_equal(design_points(design), 1000000);
     design_free(design);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(spaced_levels_are_written_numbers),
-      cmocka_unit_test(grid_walks_the_last_axis_fastest),
-      cmocka_unit_test(list_goes_in_step_and_links_by_level),
-      cmocka_unit_test(refusals_say_the_remedy),
-      cmocka_unit_test(latin_orders_are_permutations_and_even),
-      cmocka_unit_test(latin_projections_are_stratified),
-      cmocka_unit_test(sobol_is_gsl_with_origin_and_shift),
-      cmocka_unit_test(quantiles_are_the_laws),
-      cmocka_unit_test(shares_are_the_inverse_of_quantiles),
-      cmocka_unit_test(truncated_laws_stay_inside),
-      cmocka_unit_test(random_points_are_uniform),
-      cmocka_unit_test(a_million_points_are_a_counter),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,8 +58,7 @@ static void once(const char *text, const char *expected) {
     fail_msg("%s", error.message);
 }
 
-static void defaults_and_units(void **state) {
-  (void)state;
+TEST(defaults_and_units) {
   struct campaign *campaign = good(HEAD "vary: {strain: [1 %, 3 %]}\nset: {contact.friction: 0.2}\n"
                                         "limits: {time: 10 min, memory: 2 GiB}\n");
   assert_string_equal(campaign->store, "t.db");
@@ -125,8 +124,7 @@ static void defaults_and_units(void **state) {
   campaign_free(campaign);
 }
 
-static void every_kind_of_axis(void **state) {
-  (void)state;
+TEST(every_kind_of_axis) {
   struct campaign *campaign = good(HEAD
                                    "design: {kind: sobol, points: 16, seed: 3}\nvary:\n"
                                    "  threshold.strain: {log: [1 %, 8 %], n: 4}\n"
@@ -156,8 +154,7 @@ static void every_kind_of_axis(void **state) {
 }
 
 /* Values of axes are checked where a point is made: the point's scene is freed then (the leak check sees it). */
-static void values_that_do_not_fit_make_no_point(void **state) {
-  (void)state;
+TEST(values_that_do_not_fit_make_no_point) {
   static const struct {
     const char *vary;
     struct field_value values[2];
@@ -184,8 +181,7 @@ static void values_that_do_not_fit_make_no_point(void **state) {
   }
 }
 
-static void independent_seeds_follow_the_point(void **state) {
-  (void)state;
+TEST(independent_seeds_follow_the_point) {
   struct campaign *campaign = good(HEAD "seeds: {first: 10, independent: true}\nvary: {strain: [1 %, 3 %]}\n");
   struct error error;
   struct scene *a = campaign_point_scene(campaign, &campaign->axes[0].levels[0], &error);
@@ -199,8 +195,7 @@ static void independent_seeds_follow_the_point(void **state) {
   campaign_free(campaign);
 }
 
-static void equal_values_are_one_point(void **state) {
-  (void)state;
+TEST(equal_values_are_one_point) {
   static const struct {
     const char *text;
     uint64_t points;
@@ -224,8 +219,7 @@ static void equal_values_are_one_point(void **state) {
 }
 
 /* Two names of one input are a slip; documents of stores may have them, the last one counts. */
-static void one_input_is_set_once(void **state) {
-  (void)state;
+TEST(one_input_is_set_once) {
   static const char twice[] = HEAD "set: {body.diameter: 8 cm, diameter: 9 cm}\n";
   bad(twice, "t.yaml:3:|set.diameter: the same input as set.body.diameter");
   struct campaign *campaign = NULL;
@@ -252,8 +246,7 @@ static void one_input_is_set_once(void **state) {
   assert_int_equal(code, STATUS_USAGE);
 }
 
-static void bad_documents_are_told_what_to_do(void **state) {
-  (void)state;
+TEST(bad_documents_are_told_what_to_do) {
   bad("name: t\nscene: disc-collision\nset: {impact.speed: 100 m/s}\nvary: {impact.parameter: [0, 0.5]}\n",
       "t.yaml:3:21: error: set.impact.speed: has no effect|t.yaml:4:26: error: vary.impact.parameter: the dem scene");
   bad(HEAD "seeds: [4]\n", "t.yaml:3:8: error: seeds: expected keys and values below it|per_point");
@@ -325,15 +318,13 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "store: {a: b}\n", "store");
 }
 
-static void all_errors_come_at_once(void **state) {
-  (void)state;
+TEST(all_errors_come_at_once) {
   bad("name: t\nscene: disc-explosion\nvary:\n  threshold.strain: [1 kg]\nset:\n  contact.friction: many\n"
       "seeds: {per_point: none}\nlimits: {time: -1 s}\nkepe: {fields: all}\n",
       "t.yaml:4:|t.yaml:6:|t.yaml:7:|t.yaml:8:|t.yaml:9:");
 }
 
-static void odd_bytes_are_refused(void **state) {
-  (void)state;
+TEST(odd_bytes_are_refused) {
   struct campaign *campaign;
   struct error error;
   const struct {
@@ -358,8 +349,7 @@ static void odd_bytes_are_refused(void **state) {
   assert_int_equal(campaign_load(".", &campaign, &error), STATUS_IO);
 }
 
-static void examples_are_ready_to_run(void **state) {
-  (void)state;
+TEST(examples_are_ready_to_run) {
   DIR *folder = opendir(CLAST_SOURCE_DIR "/campaign/examples");
   int seen = 0;
   assert_non_null(folder);
@@ -392,8 +382,7 @@ static void examples_are_ready_to_run(void **state) {
 }
 
 /* Rules that are younger than a store do not refuse what has run: `clast retry` reads its document. */
-static void stored_rules_of_seeds_are_read(void **state) {
-  (void)state;
+TEST(stored_rules_of_seeds_are_read) {
   static const char text[] = "name: x\nscene: disc-explosion\nquantity: energy_input\n"
                              "seeds: {until: {half_width: 5, minimum: 10}, max: 20}\n";
   struct campaign *campaign = NULL;
@@ -407,8 +396,7 @@ static void stored_rules_of_seeds_are_read(void **state) {
 }
 
 /* Documents and scenes of stores from before units were required. */
-static void stored_numbers_are_si(void **state) {
-  (void)state;
+TEST(stored_numbers_are_si) {
   static const char text[] = "name: x\nscene: disc-explosion\nset: {threshold.angle: 0.1}\n"
                              "vary: {threshold.strain: [0.02, 3 %]}\nlimits: {time: 60}\n";
   struct campaign *campaign = NULL;
@@ -450,8 +438,7 @@ static void axis_text(const char *vary, const char *expected) {
   campaign_free(campaign);
 }
 
-static void axes_are_shown_with_units(void **state) {
-  (void)state;
+TEST(axes_are_shown_with_units) {
   axis_text("threshold.strain: [1 %, 0.1 %]", "1 %, 0.1 %");
   axis_text("threshold.angle: [4 deg]", "4 deg");
   axis_text("beam.young_modulus: {uniform: [1 GPa, 2 GPa]}", "uniform from 1 GPa to 2 GPa");
@@ -464,23 +451,4 @@ static void axes_are_shown_with_units(void **state) {
             "follows grain.young_modulus: 0.5 times it");
   axis_text("threshold.strain: {from: 1 %, to: 20 %, n: 20}",
             "1 %, 2 %, 3 %, 4 %, 5 %, 6 %, 7 %, 8 %, 9 %, 10 %, 11 % ... 20 %: 20 values");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(defaults_and_units),
-      cmocka_unit_test(every_kind_of_axis),
-      cmocka_unit_test(stored_numbers_are_si),
-      cmocka_unit_test(stored_rules_of_seeds_are_read),
-      cmocka_unit_test(axes_are_shown_with_units),
-      cmocka_unit_test(values_that_do_not_fit_make_no_point),
-      cmocka_unit_test(independent_seeds_follow_the_point),
-      cmocka_unit_test(equal_values_are_one_point),
-      cmocka_unit_test(one_input_is_set_once),
-      cmocka_unit_test(bad_documents_are_told_what_to_do),
-      cmocka_unit_test(all_errors_come_at_once),
-      cmocka_unit_test(odd_bytes_are_refused),
-      cmocka_unit_test(examples_are_ready_to_run),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,9 @@
 /* The driver against a real store, with a farm played by the test: same bits for any slots, order and interruptions;
  * resume, growth, attempts, the failure limit, surplus, fields. */
+#define CHECK_OWN_MAIN
 #include <signal.h>
 #include <sys/wait.h>
 
-#include "analysis/analysis.h"
 #include "campaign/terminal/progress.h"
 #include "tests/support/campaign_play.h"
 #include "tests/support/check.h"
@@ -26,8 +26,7 @@ static char *complete(const struct campaign *campaign, const char *path, int slo
   return play_dump(path);
 }
 
-static void same_bits_whatever_the_slots(void **state) {
-  (void)state;
+TEST(same_bits_whatever_the_slots) {
   struct campaign *campaign = play_campaign(3, 2, 5);
   char *one = complete(campaign, in("one.db"), 1, 0), *three = complete(campaign, in("three.db"), 3, 1);
   char *many = complete(campaign, in("many.db"), 20, 2);
@@ -60,8 +59,7 @@ static void same_bits_whatever_the_slots(void **state) {
   campaign_free(campaign);
 }
 
-static void killed_at_random_instants(void **state) {
-  (void)state;
+TEST(killed_at_random_instants) {
   struct campaign *campaign = play_campaign(2, 2, 40);
   char *whole = complete(campaign, in("whole.db"), 2, 0);
   const char *path = in("killed.db");
@@ -83,8 +81,7 @@ static void killed_at_random_instants(void **state) {
   campaign_free(campaign);
 }
 
-static void growing_campaigns_repeat_nothing(void **state) {
-  (void)state;
+TEST(growing_campaigns_repeat_nothing) {
   const char *path = in("grown.db");
   struct driver_summary summary;
   struct play play = {.slots = 3};
@@ -110,8 +107,7 @@ static void growing_campaigns_repeat_nothing(void **state) {
   campaign_free(small), campaign_free(deeper), campaign_free(wider);
 }
 
-static void a_rule_gives_the_same_prefix_whatever_the_slots(void **state) {
-  (void)state;
+TEST(a_rule_gives_the_same_prefix_whatever_the_slots) {
   struct campaign *campaign = play_campaign(2, 1, 0);
   campaign->until_half_width = 0.003;
   campaign->maximum = 120;
@@ -149,8 +145,7 @@ static enum play_fate crash_all(uint64_t seed, int attempt) {
   return PLAY_CRASH;
 }
 
-static void attempts_are_kept_and_repeated_up_to_the_limit(void **state) {
-  (void)state;
+TEST(attempts_are_kept_and_repeated_up_to_the_limit) {
   const char *path = in("attempts.db");
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(2, 1, 6);
@@ -189,8 +184,7 @@ static enum play_fate lose_three(uint64_t seed, int attempt) {
 }
 
 /* Runs that the machine ended are skipped, whatever their number, and computed when the machine allows it. */
-static void lost_runs_are_never_given_up(void **state) {
-  (void)state;
+TEST(lost_runs_are_never_given_up) {
   const char *path = in("lost.db");
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(2, 1, 6);
@@ -213,8 +207,7 @@ static void lost_runs_are_never_given_up(void **state) {
   campaign_free(campaign);
 }
 
-static void stops_when_too_many_of_the_first_fail(void **state) {
-  (void)state;
+TEST(stops_when_too_many_of_the_first_fail) {
   const char *path = in("failing.db");
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(3, 3, 10);
@@ -229,8 +222,7 @@ static void stops_when_too_many_of_the_first_fail(void **state) {
   campaign_free(campaign);
 }
 
-static void failed_states_are_results(void **state) {
-  (void)state;
+TEST(failed_states_are_results) {
   const char *path = in("states.db");
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(1, 1,
@@ -263,8 +255,7 @@ static void print_line(void *context, const char *text) {
   fprintf(stderr, "%s\n", text);
 }
 
-static void fields_are_kept_as_asked(void **state) {
-  (void)state;
+TEST(fields_are_kept_as_asked) {
   const char *path = in("fields.db");
   char kept[128];
   struct driver_summary summary;
@@ -302,8 +293,7 @@ static status write_few_fields(void *run, const char *path, struct error *error)
 }
 
 /* A full disk: the campaign stops and says so, what ran is stored without fields, and the next invocation makes all. */
-static void fields_that_cannot_be_written_stop_the_campaign(void **state) {
-  (void)state;
+TEST(fields_that_cannot_be_written_stop_the_campaign) {
   char path[128], kept[200];
   snprintf(path, sizeof path, "%s", in("full.db"));
   snprintf(kept, sizeof kept, "%s/full-fields", folder);
@@ -332,8 +322,7 @@ static void fields_that_cannot_be_written_stop_the_campaign(void **state) {
 }
 
 /* The last line of progress: every run that the rule wanted is done. */
-static void the_total_of_a_rule_is_met(void **state) {
-  (void)state;
+TEST(the_total_of_a_rule_is_met) {
   char *text = NULL;
   size_t size = 0;
   struct driver_summary summary;
@@ -359,8 +348,7 @@ static void the_total_of_a_rule_is_met(void **state) {
 }
 
 /* Every line of progress tells all runs, also those of points that nobody has met yet. */
-static void the_total_counts_points_not_met(void **state) {
-  (void)state;
+TEST(the_total_counts_points_not_met) {
   char *text = NULL, *rest = NULL;
   size_t size = 0;
   int lines = 0;
@@ -380,8 +368,7 @@ static void the_total_counts_points_not_met(void **state) {
   campaign_free(campaign);
 }
 
-static void equal_points_are_computed_once(void **state) {
-  (void)state;
+TEST(equal_points_are_computed_once) {
   const char *path = in("equal.db");
   struct driver_summary summary;
   struct campaign *campaign = play_campaign(3, 2, 2);
@@ -394,8 +381,7 @@ static void equal_points_are_computed_once(void **state) {
   campaign_free(campaign);
 }
 
-static void broken_answers_are_refused(void **state) {
-  (void)state;
+TEST(broken_answers_are_refused) {
   struct campaign *campaign = play_campaign(1, 1, 1);
   struct run_request request = {&toy_engine, campaign->scene->inputs, 5, NULL, NULL};
   struct run_result result;
@@ -427,27 +413,10 @@ static void broken_answers_are_refused(void **state) {
 }
 
 int main(void) {
-  analysis_init();
   snprintf(folder, sizeof folder, "driver-test-XXXXXX");
   if (!mkdtemp(folder))
     return 1;
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_bits_whatever_the_slots),
-      cmocka_unit_test(killed_at_random_instants),
-      cmocka_unit_test(growing_campaigns_repeat_nothing),
-      cmocka_unit_test(a_rule_gives_the_same_prefix_whatever_the_slots),
-      cmocka_unit_test(attempts_are_kept_and_repeated_up_to_the_limit),
-      cmocka_unit_test(lost_runs_are_never_given_up),
-      cmocka_unit_test(stops_when_too_many_of_the_first_fail),
-      cmocka_unit_test(failed_states_are_results),
-      cmocka_unit_test(fields_are_kept_as_asked),
-      cmocka_unit_test(fields_that_cannot_be_written_stop_the_campaign),
-      cmocka_unit_test(the_total_of_a_rule_is_met),
-      cmocka_unit_test(the_total_counts_points_not_met),
-      cmocka_unit_test(equal_points_are_computed_once),
-      cmocka_unit_test(broken_answers_are_refused),
-  };
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  int failed = check_run(NULL, NULL);
   char command[128];
   snprintf(command, sizeof command, "rm -rf %s", folder);
   return system(command) == 0 ? failed : 1;

@@ -16,8 +16,7 @@ static struct progress_state of(int64_t done) {
                                  .mean = {.mean = 0.3125, .half_width = 0.008}};
 }
 
-static void durations(void **state) {
-  (void)state;
+TEST(durations) {
   char text[32];
   const struct {
     double s;
@@ -30,8 +29,7 @@ static void durations(void **state) {
   }
 }
 
-static void a_rule_tells_how_narrow_its_interval_is(void **state) {
-  (void)state;
+TEST(a_rule_tells_how_narrow_its_interval_is) {
   char text[512] = "";
   FILE *out = fmemopen(text, sizeof text, "w");
   struct progress *progress = progress_create(out, PROGRESS_BAR, false, 200);
@@ -46,8 +44,7 @@ static void a_rule_tells_how_narrow_its_interval_is(void **state) {
   assert_non_null(strstr(text, ", the rule's interval at point 2 ± 2.6e+05 Pa (asked 2e+05 Pa)"));
 }
 
-static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
-  (void)state;
+TEST(a_log_gets_a_line_per_twentieth_or_minute) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
@@ -83,8 +80,7 @@ static void a_log_gets_a_line_per_twentieth_or_minute(void **state) {
 }
 
 /* A study runs one campaign after the other: each tells its progress, in lines two seconds apart. */
-static void a_log_tells_of_each_part_of_a_study(void **state) {
-  (void)state;
+TEST(a_log_tells_of_each_part_of_a_study) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
@@ -104,8 +100,7 @@ static void a_log_tells_of_each_part_of_a_study(void **state) {
   free(text);
 }
 
-static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
-  (void)state;
+TEST(a_bar_is_redrawn_ten_times_a_second_and_fits) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
@@ -140,13 +135,4 @@ static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
   assert_non_null(strstr(text, "3 failed"));
   assert_int_equal(text[size - 1], '\n');
   free(text);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(durations),
-                                     cmocka_unit_test(a_rule_tells_how_narrow_its_interval_is),
-                                     cmocka_unit_test(a_log_gets_a_line_per_twentieth_or_minute),
-                                     cmocka_unit_test(a_log_tells_of_each_part_of_a_study),
-                                     cmocka_unit_test(a_bar_is_redrawn_ten_times_a_second_and_fits)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

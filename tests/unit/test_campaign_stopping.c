@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "campaign/design/design.h"
 #include "campaign/scheduler/point.h"
@@ -16,8 +15,7 @@ static double normal(uint64_t seed, uint64_t item, uint64_t draw) {
   return sqrt(-2 * log(1 - u)) * cos(2 * M_PI * v);
 }
 
-static void judges_prefixes(void **state) {
-  (void)state;
+TEST(judges_prefixes) {
   double values[200];
   for (int r = 0; r < 200; r++)
     values[r] = normal(1, 0, (uint64_t)r);
@@ -53,8 +51,7 @@ static void judges_prefixes(void **state) {
 /* A point of a share that has met the rule has no wider interval in a table. Here 2 of 25 values are 0.62 and the
  * others 1: at 50 the guarded Student's interval is +- 0.0499, that of the share +- 0.056. Equal values end it at 50.
  */
-static void the_table_of_a_share_is_no_wider(void **state) {
-  (void)state;
+TEST(the_table_of_a_share_is_no_wider) {
   double values[400];
   for (int r = 0; r < 400; r++)
     values[r] = r % 25 < 2 ? 0.62 : 1;
@@ -78,8 +75,7 @@ static void the_table_of_a_share_is_no_wider(void **state) {
  * many times. The point's own rule decides when to stop; the test compares averages over different sets of runs.
  * Standard error of the mean of PLAYS plays of >= 30 unit normals: 1/sqrt(30 PLAYS) = 0.0041; five of them are allowed.
  * Stopping itself does not bias a mean of symmetric values. */
-static void prefixes_are_unbiased_where_first_finished_is_not(void **state) {
-  (void)state;
+TEST(prefixes_are_unbiased_where_first_finished_is_not) {
   enum { PLAYS = 2000, SLOTS = 32, MOST = 200 };
   double prefix_bias = 0, first_bias = 0;
   for (uint64_t play = 0; play < PLAYS; play++) {
@@ -142,8 +138,7 @@ static void prefixes_are_unbiased_where_first_finished_is_not(void **state) {
     fail_msg("first finished: bias %g: the test has lost its point", first_bias);
 }
 
-static void a_failed_attempt_is_wanted_again(void **state) {
-  (void)state;
+TEST(a_failed_attempt_is_wanted_again) {
   struct point_replicate replicates[16] = {{0}};
   double values[16];
   struct point point = {.rule = {.fixed = true, .minimum = 5, .maximum = 5},
@@ -168,8 +163,7 @@ static void a_failed_attempt_is_wanted_again(void **state) {
   assert_true(point.decided && point_over(&point));
 }
 
-static void fields_of_the_extremes(void **state) {
-  (void)state;
+TEST(fields_of_the_extremes) {
   struct point_replicate replicates[16] = {{0}};
   double values[16] = {3, NAN, 1, 5, 5, 1};
   struct point point = {.prefix = 6, .capacity = 16, .replicates = replicates, .values = values, .decided = true};
@@ -188,8 +182,7 @@ static void fields_of_the_extremes(void **state) {
   assert_false(replicates[0].replay || replicates[1].replay); /* one has its fields already, one failed */
 }
 
-static void costs_are_learnt(void **state) {
-  (void)state;
+TEST(costs_are_learnt) {
   struct point_cost_model model = {0};
   struct point_cost cheap = {.work = 10}, dear = {.work = 30};
   assert_true(point_cost_predict(&model, &dear) > point_cost_predict(&model, &cheap)); /* by work alone */
@@ -201,15 +194,4 @@ static void costs_are_learnt(void **state) {
   assert_true(fabs(point_cost_predict(&model, &cheap) - 8) < 0.01 && point_cost_predict(&model, &dear) < 13);
   point_cost_learn(&model, &dear, NAN);
   assert_int_equal(dear.runs, 1);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(judges_prefixes),
-                                     cmocka_unit_test(the_table_of_a_share_is_no_wider),
-                                     cmocka_unit_test(prefixes_are_unbiased_where_first_finished_is_not),
-                                     cmocka_unit_test(a_failed_attempt_is_wanted_again),
-                                     cmocka_unit_test(fields_of_the_extremes),
-                                     cmocka_unit_test(costs_are_learnt)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

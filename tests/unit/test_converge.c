@@ -5,7 +5,6 @@
 
 #include <sqlite3.h>
 
-#include "analysis/analysis.h"
 #include "campaign/converge/ladder.h"
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
@@ -29,8 +28,7 @@ static const struct knob *knob_of(const char *engine, const char *name) {
   return knob;
 }
 
-static void every_knob_names_inputs_of_its_engine(void **state) {
-  (void)state;
+TEST(every_knob_names_inputs_of_its_engine) {
   size_t count = 0;
   for (size_t i = 0; i < engine_count(); i++) {
     const struct engine_kind *kind = engine_at(i);
@@ -54,8 +52,7 @@ static void every_knob_names_inputs_of_its_engine(void **state) {
 
 /* Every knob of every built-in scene either has a ladder with one reference, decreasing steps and different levels, or
  * states why it has none. */
-static void ladders_of_all_scenes(void **state) {
-  (void)state;
+TEST(ladders_of_all_scenes) {
   size_t made = 0, refused = 0;
   for (size_t s = 0; s < scene_builtin_count(); s++) {
     struct scene *scene = scene_of(scene_builtin_name(s));
@@ -102,8 +99,7 @@ static bool is_near(double value, double expected) {
 
 /* A graded body is fine at the point of impact. With more particles all of its spacings get smaller by one factor, so
  * that one law describes the ladder. With the zone alone, the rest gets coarser. The zone keeps its size. */
-static void graded_bodies_keep_their_zone(void **state) {
-  (void)state;
+TEST(graded_bodies_keep_their_zone) {
   struct scene *scene = scene_of("solid-ice");
   const struct sph_inputs *own = scene->inputs;
   struct ladder ladder;
@@ -151,8 +147,7 @@ static void graded_bodies_keep_their_zone(void **state) {
 }
 
 /* Finer grains of a block are more grains: its sides stay, to half a grain. */
-static void blocks_keep_their_sides(void **state) {
-  (void)state;
+TEST(blocks_keep_their_sides) {
   static const char *const names[] = {"uniaxial", "compression", "block-impact"};
   for (size_t s = 0; s < sizeof names / sizeof *names; s++) {
     struct scene *scene = scene_of(names[s]);
@@ -177,8 +172,7 @@ static void blocks_keep_their_sides(void **state) {
   }
 }
 
-static void levels_of_ones_own(void **state) {
-  (void)state;
+TEST(levels_of_ones_own) {
   struct scene *scene = scene_of("basalt-sphere");
   struct ladder ladder;
   char *notes = NULL;
@@ -230,8 +224,7 @@ static void levels_of_ones_own(void **state) {
 }
 
 /* Named settings are levels by their work; the others are compared with the one called reference. */
-static void named_settings_are_levels(void **state) {
-  (void)state;
+TEST(named_settings_are_levels) {
   char text[8192];
   struct scene *scene = NULL;
   const char *builtin = scene_builtin_text("disc-explosion"), *own = strstr(builtin, "\nsettings:");
@@ -274,8 +267,7 @@ static void named_settings_are_levels(void **state) {
 }
 
 /* The choices of other codes are another model, and no error of the resolution: levels only if the user names them. */
-static void settings_of_another_model_are_no_levels(void **state) {
-  (void)state;
+TEST(settings_of_another_model_are_no_levels) {
   struct scene *scene = scene_of("basalt-sphere");
   const struct knob *knob = knob_of("sph", "settings");
   struct ladder ladder;
@@ -306,8 +298,7 @@ static int integer(struct store *store, const char *sql) {
   return (int)number(store, sql);
 }
 
-static void findings_replace_earlier_ones(void **state) {
-  (void)state;
+TEST(findings_replace_earlier_ones) {
   char path[64];
   struct store *store = NULL;
   struct scene *scene = scene_of("disc-explosion");
@@ -385,8 +376,7 @@ static void studied(struct store *store, int64_t point, const char *knob, double
   level_of(store, 0, point, knob, resolution, open, verdict);
 }
 
-static void a_point_has_the_errors_of_its_knobs(void **state) {
-  (void)state;
+TEST(a_point_has_the_errors_of_its_knobs) {
   char path[64];
   struct store *store = NULL;
   assert_int_equal(store_open_writer(fixture_path(path, "resolution"), &store, NULL, 0, &error), STATUS_OK);
@@ -428,8 +418,7 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
 }
 
 /* A level of one knob has the errors that the other knobs leave at the scene's own setting. */
-static void a_level_has_the_errors_of_the_other_knobs(void **state) {
-  (void)state;
+TEST(a_level_has_the_errors_of_the_other_knobs) {
   char path[64];
   struct store *store = NULL;
   struct ask_resolution found;
@@ -477,8 +466,7 @@ static double error_of_two(struct store *store, int64_t point, double resolution
 
 /* A finer study tells more than the one before it, also if that had a larger error; one as fine only with more seeds.
  */
-static void a_finer_study_replaces_a_coarser_one(void **state) {
-  (void)state;
+TEST(a_finer_study_replaces_a_coarser_one) {
   char path[64];
   struct store *store = NULL;
   assert_int_equal(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error), STATUS_OK);
@@ -494,8 +482,7 @@ static void a_finer_study_replaces_a_coarser_one(void **state) {
 }
 
 /* The reference if it was run, else the finest level that was. */
-static void reference_of_a_ladder(void **state) {
-  (void)state;
+TEST(reference_of_a_ladder) {
   static struct study_ladder ladder;
   ladder = (struct study_ladder){.levels.count = 4};
   ladder.levels.level[2].reference = true;
@@ -506,21 +493,4 @@ static void reference_of_a_ladder(void **state) {
   assert_int_equal(study_reference(&ladder), 1);
   ladder.left_out[0] = ladder.left_out[1] = true;
   assert_int_equal(study_reference(&ladder), 0);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(reference_of_a_ladder),
-                                     cmocka_unit_test(every_knob_names_inputs_of_its_engine),
-                                     cmocka_unit_test(ladders_of_all_scenes),
-                                     cmocka_unit_test(graded_bodies_keep_their_zone),
-                                     cmocka_unit_test(blocks_keep_their_sides),
-                                     cmocka_unit_test(levels_of_ones_own),
-                                     cmocka_unit_test(named_settings_are_levels),
-                                     cmocka_unit_test(settings_of_another_model_are_no_levels),
-                                     cmocka_unit_test(findings_replace_earlier_ones),
-                                     cmocka_unit_test(a_point_has_the_errors_of_its_knobs),
-                                     cmocka_unit_test(a_level_has_the_errors_of_the_other_knobs),
-                                     cmocka_unit_test(a_finer_study_replaces_a_coarser_one)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

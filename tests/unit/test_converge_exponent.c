@@ -1,6 +1,5 @@
 /* Convergence studies of exponents: mean, interval and bias of a level are those of the pooled exponent of its runs,
  * and a difference that was put into the store is found. */
-#include "analysis/analysis.h"
 #include "campaign/converge/study.h"
 #include "db/ask/ask.h"
 #include "tests/support/check.h"
@@ -100,8 +99,7 @@ static void tear_down(struct fixture *f) {
   assert_int_equal(store_close(f->store, &error), STATUS_OK);
 }
 
-static void levels_have_the_pooled_exponent(void **state) {
-  (void)state;
+TEST(levels_have_the_pooled_exponent) {
   static const char *const names[] = {"beta", "beta_least_squares_from_5", "beta_masses_from_2"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     struct fixture f;
@@ -149,8 +147,7 @@ static double difference_of(size_t n, const uint32_t *chosen, void *context) {
 }
 
 /* The bias and its interval are those of the difference itself with one seed after another left out of both. */
-static void the_bias_is_found(void **state) {
-  (void)state;
+TEST(the_bias_is_found) {
   struct fixture f;
   struct study_found found;
   struct pair pair;
@@ -171,8 +168,7 @@ static void the_bias_is_found(void **state) {
 }
 
 /* Then it is the second error of the exponent, under both its names, of both points. */
-static void the_store_has_the_second_error(void **state) {
-  (void)state;
+TEST(the_store_has_the_second_error) {
   struct fixture f;
   struct ask_resolution found;
   set_up(&f, "exponent-store", "beta", 0);
@@ -191,8 +187,7 @@ static void the_store_has_the_second_error(void **state) {
 }
 
 /* A seed without a run leaves its own place empty, so that levels are still compared seed by seed. */
-static void a_missing_seed_keeps_its_place(void **state) {
-  (void)state;
+TEST(a_missing_seed_keeps_its_place) {
   const uint64_t missing = 3;
   for (int result = 0; result < 2; result++) {
     struct fixture f;
@@ -204,8 +199,7 @@ static void a_missing_seed_keeps_its_place(void **state) {
 }
 
 /* One run has no interval, so a study of one seed has no result for an exponent. */
-static void one_seed_tells_nothing(void **state) {
-  (void)state;
+TEST(one_seed_tells_nothing) {
   struct fixture f;
   struct study_found found;
   set_up(&f, "exponent-one", "beta", 0);
@@ -218,8 +212,7 @@ static void one_seed_tells_nothing(void **state) {
 }
 
 /* A level that the study had no time for is one of those that the law tells beyond the finest: it is there once. */
-static void a_level_beyond_the_finest_is_there_once(void **state) {
-  (void)state;
+TEST(a_level_beyond_the_finest_is_there_once) {
   struct fixture f;
   double count, settings, known;
   set_up_levels(&f, "beyond", OUTCOME_DEFAULT, 0, "1 us,0.5 us,0.25 us,0.125 us");
@@ -234,15 +227,4 @@ static void a_level_beyond_the_finest_is_there_once(void **state) {
   assert_int_equal(answer_number(f.store, &known, &error, "SELECT count(resolution) FROM convergence"), STATUS_OK);
   assert_true(count == 6 && settings == count && known == count);
   tear_down(&f);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(levels_have_the_pooled_exponent),
-                                     cmocka_unit_test(the_bias_is_found),
-                                     cmocka_unit_test(the_store_has_the_second_error),
-                                     cmocka_unit_test(a_missing_seed_keeps_its_place),
-                                     cmocka_unit_test(one_seed_tells_nothing),
-                                     cmocka_unit_test(a_level_beyond_the_finest_is_there_once)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

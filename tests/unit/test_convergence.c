@@ -1,14 +1,12 @@
 /* Known answers of the statistics of a convergence study: bias, break-even, gain, frontier. */
 #include <math.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/convergence.h"
 #include "tests/support/check.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-static void biases(void **state) {
-  (void)state;
+TEST(biases) {
   /* Differences 1, 2, 3: mean 2, s = 1, half width t(2, .975) / sqrt 3 = 4.302653 / 1.732051 = 2.484138. */
   const double level[4] = {11, 22, 33, NAN}, reference[4] = {10, 20, 30, 40};
   struct convergence_difference d = convergence_bias(4, level, reference, true, 0.95);
@@ -34,8 +32,7 @@ static void biases(void **state) {
   assert_true(d.value == 0 && d.half_width == 0);
 }
 
-static void correlations(void **state) {
-  (void)state;
+TEST(correlations) {
   const double x[5] = {1, 2, 3, 4, 5}, y[5] = {1, 3, 2, 5, 4}, flat[5] = {1, 1, 1, 1, 1};
   const struct convergence_correlation r = convergence_correlate(5, x, y, 0.95);
   NEAR(r.value, 0.8, 1e-12);
@@ -54,16 +51,14 @@ static void correlations(void **state) {
   NEAR(1 / gain, pow(sqrt(1.0 / 36) + sqrt(0.1 * 35 / 36), 2), 1e-12);
 }
 
-static void frontiers(void **state) {
-  (void)state;
+TEST(frontiers) {
   const double cost[6] = {1, 2, 3, 4, 2, 0.5}, error[6] = {5, 3, 3, 1, 4, NAN};
   bool on[6];
   convergence_frontier(6, cost, error, on);
   assert_true(on[0] && on[1] && !on[2] && on[3] && !on[4] && !on[5]);
 }
 
-static void resolutions(void **state) {
-  (void)state;
+TEST(resolutions) {
   struct convergence_row level[3] = {{.step = 4, .mean = 0.5, .bias = -0.1, .bias_half_width = 0.02},
                                      {.step = 2, .mean = 0.56, .bias = -0.04, .bias_half_width = 0.01},
                                      {.step = 1, .mean = 0.6, .reference = true}};
@@ -106,8 +101,7 @@ static void resolutions(void **state) {
 }
 
 /* The scene's own level without runs has the error of the law at its step; beyond the law, the largest and no bound. */
-static void own_level_without_runs(void **state) {
-  (void)state;
+TEST(own_level_without_runs) {
   const size_t place[] = {0, LIMIT_LEVELS, 1, 2};
   const struct limit_point own = {.step = 0.8, .distance = {0.1, -0.02, 0.2}};
   struct limit_law law = {.verdict = LIMIT_SEEN};
@@ -137,12 +131,4 @@ static void own_level_without_runs(void **state) {
   level[1].open = false;
   convergence_resolve_own(4, level, &law, all, &own);
   assert_true(level[1].resolution == 0.17 && !level[1].open);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(biases), cmocka_unit_test(correlations),
-                                     cmocka_unit_test(frontiers), cmocka_unit_test(resolutions),
-                                     cmocka_unit_test(own_level_without_runs)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,15 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "campaign/scheduler/point.h"
 #include "campaign/scheduler/scheduler.h"
 #include "tests/support/check.h"
 
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-static void time_left(void **state) {
-  (void)state;
+TEST(time_left) {
   /* Ten runs of 1 s on two busy slots, two of them half done: 9 s of work. */
   struct point_cost_left left = {.missing_s = 10, .under_way_s = 1, .finished_s = 9, .elapsed_s = 5, .slots = 2};
   NEAR(point_cost_time_left(&left), 4.5, 1e-12);
@@ -32,8 +30,7 @@ static void time_left(void **state) {
 }
 
 /* Before any run: the work. Then the rate of all runs, which weighs as much as one run of the point itself. */
-static void prediction(void **state) {
-  (void)state;
+TEST(prediction) {
   struct point_cost_model model = {0};
   struct point_cost light = {.work = 10}, heavy = {.work = 40};
   NEAR(point_cost_predict(&model, &heavy), 40, 0);
@@ -49,8 +46,7 @@ static void prediction(void **state) {
 
 /* The piece has reached a quarter of the hard end after 10 steps; the coarse run had made 5 steps there, and ended
  * after 20 steps at 0.6: the whole run takes 40 steps. */
-static void whole_runs(void **state) {
-  (void)state;
+TEST(whole_runs) {
   struct plan_trial *piece = calloc(2, sizeof *piece), *coarse = piece + 1;
   assert_non_null(piece);
   *piece = (struct plan_trial){.prepare_s = 1, .step_s = 2, .finish_s = 0.5, .steps = 10, .progress = 0.25};
@@ -77,8 +73,7 @@ static void whole_runs(void **state) {
 
 /* A piece of a real run, with its coarse version, predicts the number of steps of the whole run within a factor of 1.5.
  * Time is counted in steps: a step counts as a second. */
-static void a_run_told_by_its_beginning(void **state) {
-  (void)state;
+TEST(a_run_told_by_its_beginning) {
   struct scene *scene = NULL, *coarse = NULL;
   struct error error = {0};
   char setting[64];
@@ -110,8 +105,7 @@ static void a_run_told_by_its_beginning(void **state) {
 }
 
 /* Programs read these keys and their meanings. */
-static void keys_of_a_plan(void **state) {
-  (void)state;
+TEST(keys_of_a_plan) {
   static const char
       text[] = "name: keys\nscene: disc-explosion\nvary: {threshold.strain: [1 %, 2 %], contact.law: [off]}\n";
   struct campaign *campaign = NULL;
@@ -155,8 +149,7 @@ static void keys_of_a_plan(void **state) {
 
 /* Four sizes at seven speeds, the sizes one after the other: two points of each are timed. A run takes 2 s for each
  * unit of work, and the time was used up before the last size: the mean is that of all 28 points. */
-static void all_sizes_count_in_a_mean(void **state) {
-  (void)state;
+TEST(all_sizes_count_in_a_mean) {
   static const double work[] = {1, 4, 13, 46};
   size_t of_size[4] = {0}, before = 0;
   struct plan_samples samples = {0};
@@ -177,8 +170,7 @@ static void all_sizes_count_in_a_mean(void **state) {
 }
 
 /* A run of two threads takes half of its processor time; the trial itself runs on one. */
-static void threads_share_the_time(void **state) {
-  (void)state;
+TEST(threads_share_the_time) {
   static const char
       text[] = "name: threads\nscene: basalt-sphere\nset: {fidelity.particles: 300, fidelity.threads: 2}\n"
                "seeds: {per_point: 1}\n";
@@ -197,16 +189,4 @@ static void threads_share_the_time(void **state) {
   plan_clear(&plan);
   campaign_free(campaign);
   remove("threads.yaml");
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(time_left),
-                                     cmocka_unit_test(prediction),
-                                     cmocka_unit_test(whole_runs),
-                                     cmocka_unit_test(a_run_told_by_its_beginning),
-                                     cmocka_unit_test(all_sizes_count_in_a_mean),
-                                     cmocka_unit_test(keys_of_a_plan),
-                                     cmocka_unit_test(threads_share_the_time)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static struct crossing find(size_t n, const double *x, const double *y, double l
  * freedom: variance 8.5 / 3, weight of a mean 6 / 8.5 = 0.705882. A crossing below 0 would put the first mean at 0:
  * 4 * 0.705882 = 2.823529, likelihood exp(-1.411765) = 0.243713; likewise above 1. Both are far below 1.4 t^2 = 14.2.
  * Gaps of 0.1, 0.5, 0.5 and 0.1 have the weights 0.0243713, 0.5, 0.5, 0.0243713; an eighth of their sum is 0.131093. */
-static void means_by_hand(void **state) {
-  (void)state;
+TEST(means_by_hand) {
   const double x[6] = {1, 0.5, 0, 0, 0.5, 1}, y[6] = {10.5, 9, 7, 9, 11, 13.5};
   struct crossing found = find(6, x, y, 10, NAN);
   assert_int_equal(found.kind, CROSSING_OPEN);
@@ -42,8 +41,7 @@ static void means_by_hand(void **state) {
  * are n runs of the lower mode. If the crossing were below all places, their share would be at least 1/4: minus twice
  * the logarithm of the likelihood is -2 n ln(3/4) = 0.575364 n. The limit is 1.4 * 3.841459 = 5.378042, so 9 runs do
  * not exclude it and 10 runs do. Above, -2 n ln(1/4) = 2.772589 n: two runs. */
-static void modes_by_hand(void **state) {
-  (void)state;
+TEST(modes_by_hand) {
   double x[12], y[12];
   for (int n = 9; n <= 10; n++) {
     for (int i = 0; i < n + 2; i++) {
@@ -62,8 +60,7 @@ static void modes_by_hand(void **state) {
 }
 
 /* A run of the upper mode at 0.4 and one of the lower at 0.6 are out of order; the curve pools them: 0, 1/2, 1. */
-static void places_out_of_order_are_pooled(void **state) {
-  (void)state;
+TEST(places_out_of_order_are_pooled) {
   const double x[22] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.4, 0.6, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   const double y[22] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   const struct crossing found = find(22, x, y, 0.5, 0.5);
@@ -100,8 +97,7 @@ static double nothing(double x) {
   return 0;
 }
 
-static void kinds(void **state) {
-  (void)state;
+TEST(kinds) {
   assert_int_equal(of_curve(high, 0.1).kind, CROSSING_ABOVE);
   assert_int_equal(of_curve(low, 0.1).kind, CROSSING_BELOW);
   assert_int_equal(of_curve(low, 0).kind, CROSSING_BELOW);
@@ -121,8 +117,7 @@ static void kinds(void **state) {
 }
 
 /* Six places with 20 runs each, at the level without noise: a third of their runs ends within a place. */
-static void plateau_of_few_places(void **state) {
-  (void)state;
+TEST(plateau_of_few_places) {
   static const double level[4] = {-1, -0.01, 0.01, 1};
   double x[200], y[200];
   for (int i = 0; i < 200; i++) {
@@ -134,8 +129,7 @@ static void plateau_of_few_places(void **state) {
   assert_int_equal(found.kind, CROSSING_PLATEAU);
 }
 
-static void runs_without_results(void **state) {
-  (void)state;
+TEST(runs_without_results) {
   struct error error;
   struct crossing found;
   const double x[4] = {0, 1, 1, 1}, y[4] = {1, NAN, NAN, HUGE_VAL};
@@ -147,8 +141,7 @@ static void runs_without_results(void **state) {
 /* Scatter of 0.5 about the means -1, 1 and, at the end, -0.65. Pooled within the places the variance of a run is 0.25 *
  * 4 / 3, so the mean of four has an error of 0.289, and the last place is 2.25 errors below the level, after a crossing
  * between 0.45 and 0.55. It proves no second one, but no answer is given before runs around it have been made. */
-static void a_place_that_contradicts_is_looked_at(void **state) {
-  (void)state;
+TEST(a_place_that_contradicts_is_looked_at) {
   const double places[9] = {0, 0.15, 0.3, 0.45, 0.55, 0.65, 0.75, 0.85, 1};
   double x[36], y[36];
   for (int i = 0; i < 36; i++) {
@@ -177,8 +170,7 @@ static void a_place_that_contradicts_is_looked_at(void **state) {
 /* Nothing breaks at the first place, so all of its runs are 0; elsewhere a maximum falls towards the level, 1.5, and
  * scatters much. The scatter of the neighbours would hide the first place. 6 runs there prove no crossing, but the
  * answer is not "above the level", and the next runs are there. With 24 runs the response rises at the low end. */
-static void a_place_of_equal_runs_keeps_its_own_scatter(void **state) {
-  (void)state;
+TEST(a_place_of_equal_runs_keeps_its_own_scatter) {
   for (int last = 0; last < 2; last++) { /* 2.5: still above the level, or 0.5 */
     const double means[8] = {0, 8, 18, 11, 7, 4, 3, last ? 0.5 : 2.5}, scatter[8] = {0, 8, 9, 3, 1, 0.6, 0.4, 0.2};
     for (int zeros = 6; zeros <= 24; zeros += 18) {
@@ -199,8 +191,7 @@ static void a_place_of_equal_runs_keeps_its_own_scatter(void **state) {
   }
 }
 
-static void rounds_grow_by_a_sixth(void **state) {
-  (void)state;
+TEST(rounds_grow_by_a_sixth) {
   const struct crossing found = {.next = {0.1, 0.2, 0.3, 0.4}};
   double place[CROSSING_PLACES];
   assert_int_equal(crossing_next(&found, 20, place), 2);
@@ -208,26 +199,8 @@ static void rounds_grow_by_a_sixth(void **state) {
   NEAR(place[2], 0.3, 0);
 }
 
-static void runs_for_a_width(void **state) {
-  (void)state;
+TEST(runs_for_a_width) {
   assert_int_equal(crossing_runs_for(100, 0.2, 0.1), 400);
   assert_int_equal(crossing_runs_for(368, 13, 5.5), 2100); /* 2056 */
   assert_int_equal(crossing_runs_for(40, 0.11, 0.1), 49);  /* 48.4 */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(means_by_hand),
-      cmocka_unit_test(modes_by_hand),
-      cmocka_unit_test(places_out_of_order_are_pooled),
-      cmocka_unit_test(kinds),
-      cmocka_unit_test(plateau_of_few_places),
-      cmocka_unit_test(runs_without_results),
-      cmocka_unit_test(a_place_that_contradicts_is_looked_at),
-      cmocka_unit_test(a_place_of_equal_runs_keeps_its_own_scatter),
-      cmocka_unit_test(rounds_grow_by_a_sixth),
-      cmocka_unit_test(runs_for_a_width),
-  };
-  analysis_init();
-  return cmocka_run_group_tests_name("crossing", tests, NULL, NULL);
 }

@@ -27,8 +27,7 @@ static const char *joined(const char *text, size_t size) {
   return out;
 }
 
-static void cells(void **state) {
-  (void)state;
+TEST(cells) {
   static const struct {
     const char *text, *cells;
   } cases[] = {
@@ -81,8 +80,7 @@ static void cells(void **state) {
   assert_string_equal(joined(wide, CSV_CELLS) + CSV_CELLS, "/");
 }
 
-static void lines(void **state) {
-  (void)state;
+TEST(lines) {
   static const char text[] = "a\n\"1\n2\"\r\n# note\n\n3\n";
   static const int64_t expected[] = {1, 2, 4, 6, 7};
   struct csv csv;
@@ -95,8 +93,7 @@ static void lines(void **state) {
 }
 
 /* A number means one thing, or it is refused. */
-static void numbers(void **state) {
-  (void)state;
+TEST(numbers) {
   static const struct {
     const char *text, *last; /* the last cell of the text as a number; "!": refused */
   } cases[] = {
@@ -136,8 +133,7 @@ static void numbers(void **state) {
   }
 }
 
-static void units(void **state) {
-  (void)state;
+TEST(units) {
   static const char *const cases[][3] = {{"mass (g)", "mass", "g"},
                                          {"threshold.angle [deg]", "threshold.angle", "deg"},
                                          {"a(m)", "a", "m"},
@@ -156,8 +152,7 @@ static void units(void **state) {
 
 /* FIPS 180-4's examples, and Python's hashlib (another implementation) for bytes 0, 1, 2, ... of these lengths, around
  * the block size. */
-static void sums(void **state) {
-  (void)state;
+TEST(sums) {
   static const struct {
     size_t size;
     const char *sum;
@@ -185,10 +180,4 @@ static void sums(void **state) {
   }
   text_sha256("abc", 3, text);
   assert_string_equal(text, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cells), cmocka_unit_test(lines), cmocka_unit_test(numbers),
-                                     cmocka_unit_test(units), cmocka_unit_test(sums)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

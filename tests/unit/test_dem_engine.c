@@ -23,8 +23,7 @@ static void check_table(const struct field_table *table) {
   }
 }
 
-static void tables_are_whole(void **state) {
-  (void)state;
+TEST(tables_are_whole) {
   check_table(&dem_inputs);
   check_table(&dem_results);
   check_table(&outcome_table);
@@ -41,8 +40,7 @@ static void tables_are_whole(void **state) {
   assert_int_equal(dem_inputs_check(&inputs, NULL), STATUS_OK);
 }
 
-static void builtin_scenes_say_what_they_model(void **state) {
-  (void)state;
+TEST(builtin_scenes_say_what_they_model) {
   for (size_t k = 0; k < sizeof scenes / sizeof scenes[0]; k++) {
     struct dem_inputs inputs = DEM_CASE(scenes[k], NULL);
     assert_int_equal(inputs.kind, (int)k); /* listed in the order of enum dem_kind */
@@ -64,8 +62,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
 }
 
 /* K99 table 1 in SI: the scene and the defaults must agree. */
-static void explosion_starts_as_the_paper_says(void **state) {
-  (void)state;
+TEST(explosion_starts_as_the_paper_says) {
   struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL), defaults;
   field_defaults(&dem_inputs, &defaults);
   for (size_t i = 0; i < dem_inputs.count; i++) {
@@ -107,8 +104,7 @@ static void explosion_starts_as_the_paper_says(void **state) {
   }
 }
 
-static void impact_and_collision_start(void **state) {
-  (void)state;
+TEST(impact_and_collision_start) {
   struct dem_inputs inputs = DEM_CASE("block-impact", "impact.angle=30 deg");
   struct dem_run *run;
   assert_int_equal(dem_run_create(&inputs, 1, &run, NULL), STATUS_OK);
@@ -147,8 +143,7 @@ static void impact_and_collision_start(void **state) {
 }
 
 /* A ring is what lies between two circles, and widens everywhere at one rate about its centre of mass. */
-static void ring_starts_as_described(void **state) {
-  (void)state;
+TEST(ring_starts_as_described) {
   struct dem_inputs inputs = DEM_CASE("ring-explosion", "expansion.rate=40 1/s");
   const double outer = inputs.body.diameter / 2, inner = outer - inputs.body.wall;
   assert_true(fabs(dem_inputs_hole(&inputs) / inner - 1) < 1e-12);
@@ -181,8 +176,7 @@ static void ring_starts_as_described(void **state) {
 }
 
 /* Two rings collide as two discs do. */
-static void rings_collide(void **state) {
-  (void)state;
+TEST(rings_collide) {
   struct dem_inputs inputs = DEM_CASE("disc-collision", "body.wall=3 cm", "collision.speed=20 m/s",
                                       "threshold.breaking=false", "stop.end_time=3 ms");
   struct ran ran = run_case_run(&dem_engine, &inputs, 1);
@@ -201,8 +195,7 @@ static void refuse(struct dem_inputs inputs, const char *word) {
     fail_msg("no '%s' in: %s", word, error.message);
 }
 
-static void what_cannot_run_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_run_is_refused) {
   struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL);
   inputs.fidelity.time_step = 1e-4;
   refuse(inputs, "fidelity.time_step");
@@ -242,8 +235,7 @@ static void what_cannot_run_is_refused(void **state) {
 
 /* The estimate of the longest stable step, which is there before a body: no body of 20 is less stable than it by more
  * than a tenth, nor all more stable by more than a third; also with moduli other than those that it was found with. */
-static void the_estimated_step_is_that_of_the_least_stable_body(void **state) {
-  (void)state;
+TEST(the_estimated_step_is_that_of_the_least_stable_body) {
   const char *const setting[] = {"grain.disorder=0", "grain.disorder=0.5",        "grain.disorder=1",
                                  "contact.law=off",  "beam.young_modulus=5e9 Pa", "grain.young_modulus=1e10 Pa"};
   for (int i = 0; i < 6; i++) {
@@ -262,8 +254,7 @@ static void the_estimated_step_is_that_of_the_least_stable_body(void **state) {
 
 /* The longest step of a run is that of its system, which test_dem_motion knows; the search for it ends within 1e-7 of
  * its square. It is accepted, and anything longer is refused. */
-static void the_longest_step_is_the_systems(void **state) {
-  (void)state;
+TEST(the_longest_step_is_the_systems) {
   const char *const integrators[] = {"fidelity.integrator=verlet", "fidelity.integrator=gear"};
   for (int i = 0; i < 2; i++) {
     struct dem_inputs inputs = DEM_CASE("uniaxial", integrators[i]);
@@ -286,8 +277,7 @@ static struct dem_inputs small(void) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=2 ms");
 }
 
-static void chunks_do_not_matter(void **state) {
-  (void)state;
+TEST(chunks_do_not_matter) {
   struct dem_inputs inputs = small();
   struct ran whole = run_case_run(&dem_engine, &inputs, 3);
   void *run;
@@ -297,8 +287,7 @@ static void chunks_do_not_matter(void **state) {
   free(whole.fragments);
 }
 
-static void stop_rules(void **state) {
-  (void)state;
+TEST(stop_rules) {
   struct dem_inputs inputs = small();
   struct ran ran = run_case_run(&dem_engine, &inputs, 3);
   assert_true(ran.results.dem.broken > 10);
@@ -347,8 +336,7 @@ static void stop_rules(void **state) {
 
 /* The report's figures from the ledger, compared with their definition: bounds alone do not detect a figure that is ten
  * times too small. */
-static void figures_by_hand(void **state) {
-  (void)state;
+TEST(figures_by_hand) {
   const struct dem_inputs cases[] = {small(), DEM_CASE("compression", "body.columns=8", "body.rows=12")};
   for (int c = 0; c < 2; c++) {
     struct dem_run *run;
@@ -380,8 +368,7 @@ static void figures_by_hand(void **state) {
 }
 
 /* A run is complete when it is quiet, and not before its minimum time. */
-static void completed_needs_the_least_time(void **state) {
-  (void)state;
+TEST(completed_needs_the_least_time) {
   struct dem_inputs inputs = small();
   inputs.stop.quiet_time = 2e-5;
   inputs.stop.least_time = 0;
@@ -400,8 +387,7 @@ static void completed_needs_the_least_time(void **state) {
 }
 
 /* With a threshold that no beam reaches, the other term is the larger one of every break. */
-static void breaks_are_told_apart(void **state) {
-  (void)state;
+TEST(breaks_are_told_apart) {
   for (int bend = 0; bend < 2; bend++) {
     struct dem_inputs inputs = small();
     *(bend ? &inputs.threshold.strain : &inputs.threshold.angle) = 1e3;
@@ -414,8 +400,7 @@ static void breaks_are_told_apart(void **state) {
 }
 
 /* How final a run is, compared with a run that ends at half of its time. */
-static void finality_is_what_broke_late(void **state) {
-  (void)state;
+TEST(finality_is_what_broke_late) {
   struct dem_inputs inputs = small();
   inputs.stop.quiet_time = 1;
   inputs.stop.end_time = 1e-3;
@@ -434,8 +419,7 @@ static void finality_is_what_broke_late(void **state) {
 
 /* Grains so fast that no overlap can stop them. At 400 m/s there are none; 3 km/s is four times the speed of passing.
  */
-static void grains_that_pass_are_flagged(void **state) {
-  (void)state;
+TEST(grains_that_pass_are_flagged) {
   for (int fast = 0; fast < 2; fast++) {
     struct dem_inputs block = DEM_CASE("block-impact", "body.columns=8", "body.rows=6", "stop.end_time=0.3 ms",
                                        fast ? "impact.speed=3 km/s" : "impact.speed=400 m/s");
@@ -453,8 +437,7 @@ static void grains_that_pass_are_flagged(void **state) {
 }
 
 /* Any number of grains modulo the SIMD lanes. Lists made at every step would also be right, but eight times slower. */
-static void neighbour_lists_last(void **state) {
-  (void)state;
+TEST(neighbour_lists_last) {
   struct dem_inputs inputs = small();
   for (uint64_t seed = 0; seed < 12; seed++) {
     struct dem_run *run;
@@ -467,8 +450,7 @@ static void neighbour_lists_last(void **state) {
 
 /* Pairs with a very short common side once had an unlimited contact stiffness; these two runs then ended with energy
  * errors of 67 and 5. A correct run drifts by less than 1e-3 at this time step; 1e-2 is far from both. */
-static void short_common_sides_do_not_blow_up(void **state) {
-  (void)state;
+TEST(short_common_sides_do_not_blow_up) {
   assert_true(dem_assemble_reference_side(0, 1, 1) == 0.54);
   assert_true(dem_assemble_reference_side(1e-9, 1, 1) == 0.27);
   assert_true(dem_assemble_reference_side(0.4, 1, 1) == 0.4);
@@ -483,8 +465,7 @@ static void short_common_sides_do_not_blow_up(void **state) {
   }
 }
 
-static void energy_bound_ends_a_run(void **state) {
-  (void)state;
+TEST(energy_bound_ends_a_run) {
   struct dem_inputs inputs = small();
   inputs.fidelity.energy_bound = 1e-9;
   struct ran ran = run_case_run(&dem_engine, &inputs, 3);
@@ -517,8 +498,7 @@ static void energy_bound_ends_a_run(void **state) {
 
 /* Grains that pass through others between two steps lose no energy, so the ledger does not show it: two discs that met
  * at 1000 km/s with 1 us steps once stayed whole, and the run counted as completed. */
-static void grains_too_fast_for_the_step_end_a_run(void **state) {
-  (void)state;
+TEST(grains_too_fast_for_the_step_end_a_run) {
   struct dem_inputs disc = small(), discs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=1e6 m/s");
   disc.charge.energy = 1e18;
   struct dem_inputs block = DEM_CASE("block-impact", "body.columns=8", "body.rows=6", "impact.speed=12 km/s");
@@ -539,8 +519,7 @@ static void grains_too_fast_for_the_step_end_a_run(void **state) {
 
 /* The paper's contact law needs half the step: its force jumps, and the energy drifts by 1 % in explosions of 20 kJ/m.
  */
-static void the_step_follows_from_the_contact_law(void **state) {
-  (void)state;
+TEST(the_step_follows_from_the_contact_law) {
   static const char *const laws[] = {"conservative", "printed", "off"};
   for (size_t k = 0; k < 3; k++) {
     struct scene *scene = NULL;
@@ -554,29 +533,4 @@ static void the_step_follows_from_the_contact_law(void **state) {
     assert_true(fabs(in->fidelity.time_step - 2e-6) < 1e-20);
     scene_free(scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_whole),
-                                     cmocka_unit_test(builtin_scenes_say_what_they_model),
-                                     cmocka_unit_test(the_step_follows_from_the_contact_law),
-                                     cmocka_unit_test(explosion_starts_as_the_paper_says),
-                                     cmocka_unit_test(impact_and_collision_start),
-                                     cmocka_unit_test(ring_starts_as_described),
-                                     cmocka_unit_test(rings_collide),
-                                     cmocka_unit_test(what_cannot_run_is_refused),
-                                     cmocka_unit_test(the_estimated_step_is_that_of_the_least_stable_body),
-                                     cmocka_unit_test(the_longest_step_is_the_systems),
-                                     cmocka_unit_test(chunks_do_not_matter),
-                                     cmocka_unit_test(stop_rules),
-                                     cmocka_unit_test(completed_needs_the_least_time),
-                                     cmocka_unit_test(finality_is_what_broke_late),
-                                     cmocka_unit_test(grains_that_pass_are_flagged),
-                                     cmocka_unit_test(breaks_are_told_apart),
-                                     cmocka_unit_test(neighbour_lists_last),
-                                     cmocka_unit_test(figures_by_hand),
-                                     cmocka_unit_test(short_common_sides_do_not_blow_up),
-                                     cmocka_unit_test(energy_bound_ends_a_run),
-                                     cmocka_unit_test(grains_too_fast_for_the_step_end_a_run)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Fields files of engine dem describe their contents. */
+#define CHECK_OWN_MAIN
 #include "tests/support/run_case.h"
 
 #include <unistd.h>
@@ -24,8 +25,7 @@ static size_t rows(hid_t file, const char *name) {
   return size[0];
 }
 
-static void fields_describe_themselves(void **state) {
-  (void)state;
+TEST(fields_describe_themselves) {
   struct dem_inputs cases[2] = {small(false),
                                 DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s",
                                          "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
@@ -85,6 +85,5 @@ static void fields_describe_themselves(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(fields_describe_themselves)};
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+  return check_run(make_folder, remove_folder);
 }

@@ -1,4 +1,5 @@
 /* Pinned hashes of two small runs of engine dem; tests/support/golden.h says what to do when they change. */
+#define CHECK_OWN_MAIN
 #include "tests/support/golden.h"
 
 enum { RESULTS_VERSION = 5 };
@@ -11,8 +12,7 @@ static int changed(const char *name, const struct dem_inputs *inputs, const char
   return golden_changed(&dem_engine, name, ran, own, sizeof own / sizeof *own, pinned);
 }
 
-static void bits_change_only_with_the_version(void **state) {
-  (void)state;
+TEST(bits_change_only_with_the_version) {
   golden_version(&dem_engine, RESULTS_VERSION);
   struct dem_inputs disc = DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m",
                                     "stop.end_time=1 ms");
@@ -26,6 +26,5 @@ int main(int count, char **arguments) {
   (void)count;
   if (!golden_start(arguments))
     return 71;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(bits_change_only_with_the_version)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return check_run(NULL, NULL);
 }

@@ -4,8 +4,7 @@
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"
 
-static void pairs_are_used(void **state) {
-  (void)state;
+TEST(pairs_are_used) {
   const struct difference_value a[] = {{1, 10}, {2, 20}, {3, 30}, {9, 500}};
   const struct difference_value b[] = {{1, 11}, {2, 22}, {3, 33}, {4, -500}};
   const struct difference d = sample_difference(4, a, 4, b, 0.95);
@@ -14,8 +13,7 @@ static void pairs_are_used(void **state) {
   assert_true(fabs(d.half_width - 4.302652729749 / sqrt(3)) < 1e-9); /* differences 1, 2, 3: standard deviation 1 */
 }
 
-static void independent_sides_are_welch(void **state) {
-  (void)state;
+TEST(independent_sides_are_welch) {
   const struct difference_value a[] = {{1, 1}, {2, 2}, {3, 3}, {4, 4}}, b[] = {{4, 2}, {5, 4}, {6, 6}, {7, 8}};
   const struct difference d = sample_difference(4, a, 4, b, 0.95); /* one pair is too few */
   assert_int_equal(d.pairs, 0);
@@ -23,8 +21,7 @@ static void independent_sides_are_welch(void **state) {
   assert_true(fabs(d.half_width - 3.8641672155) < 1e-6); /* 4.41 degrees of freedom */
 }
 
-static void too_few_values_have_no_interval(void **state) {
-  (void)state;
+TEST(too_few_values_have_no_interval) {
   const struct difference_value a[] = {{1, 1}}, b[] = {{1, 3}};
   const struct difference d = sample_difference(1, a, 1, b, 0.95);
   assert_true(d.difference == 2 && isnan(d.half_width) && d.pairs == 0);
@@ -36,8 +33,7 @@ static void too_few_values_have_no_interval(void **state) {
 }
 
 /* Values near the ends of double have the interval of ordinary ones, times the same power of two. */
-static void ends_of_double(void **state) {
-  (void)state;
+TEST(ends_of_double) {
   static const double first[] = {1, 2, 3, 4}, second[] = {2, 4, 6, 8};
   static const int powers[] = {-1000, -560, 560, 1015};
   for (size_t k = 0; k < 4; k++) {
@@ -48,14 +44,4 @@ static void ends_of_double(void **state) {
     }
     assert_true(fabs(ldexp(sample_difference(4, a, 4, b, 0.95).half_width, -powers[k]) - 3.8641672155) < 1e-6);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pairs_are_used),
-      cmocka_unit_test(independent_sides_are_welch),
-      cmocka_unit_test(too_few_values_have_no_interval),
-      cmocka_unit_test(ends_of_double),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

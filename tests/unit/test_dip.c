@@ -47,8 +47,7 @@ static double dip_by_definition(size_t n, const double *x) {
   return high;
 }
 
-static void known_dips(void **state) {
-  (void)state;
+TEST(known_dips) {
   double x[400];
   for (int n = 2; n <= 50; n += 6) {
     for (int i = 0; i < n; i++)
@@ -67,8 +66,7 @@ static void known_dips(void **state) {
   assert_true(isnan(scatter_dip(0, x)));
 }
 
-static void as_defined(void **state) {
-  (void)state;
+TEST(as_defined) {
   double x[24];
   for (uint64_t c = 0; c < 40; c++) {
     const size_t n = 6 + c % 14;
@@ -80,8 +78,7 @@ static void as_defined(void **state) {
 }
 
 /* Samples with one mode are reported as two no more often than the level allows; two clear modes nearly always are. */
-static void false_and_true_alarms(void **state) {
-  (void)state;
+TEST(false_and_true_alarms) {
   enum { CASES = 80, N = 60 };
   int alarms[3] = {0};
   double x[N];
@@ -102,8 +99,7 @@ static void false_and_true_alarms(void **state) {
 }
 
 /* The limit is where the share passes 0.05, for small and for large samples. */
-static void limits(void **state) {
-  (void)state;
+TEST(limits) {
   static const size_t sizes[] = {4, 20, 63, 3000};
   for (int k = 0; k < 4; k++) {
     const double limit = scatter_dip_limit(sizes[k]);
@@ -113,19 +109,11 @@ static void limits(void **state) {
   assert_true(isnan(scatter_dip_limit(3)));
 }
 
-static void large_samples(void **state) {
-  (void)state;
+TEST(large_samples) {
   /* Maechler's diptest documents p = 0.087 for the 63 values of its data set statfaculty, whose dip is 0.0595. */
   assert_true(fabs(scatter_dip_share(63, 0.05952381) - 0.087) < 0.02);
   const double share = scatter_dip_share(1000, 0.5 / sqrt(1000)),
                larger = scatter_dip_share(100000, 0.5 / sqrt(100000));
   assert_true(share > 0.01 && share < 0.1 && fabs(larger - share) < 1e-12);
   assert_true(isnan(scatter_dip_share(3, 0.2)));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(known_dips), cmocka_unit_test(as_defined),
-                                     cmocka_unit_test(false_and_true_alarms), cmocka_unit_test(limits),
-                                     cmocka_unit_test(large_samples)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,8 +13,7 @@ static int differs(const char *text, size_t size, const char *expected) {
   return wrong;
 }
 
-static void good_documents_are_read(void **state) {
-  (void)state;
+TEST(good_documents_are_read) {
   struct thing thing;
   char *report = report_text(
       "# comment\nshape: block\nblock: {height: 12 mm}\nbody:\n  length: \"30 cm\"\n  limit: off\n  count: 1e1\n"
@@ -43,8 +42,7 @@ static void good_documents_are_read(void **state) {
   assert_true(thing.limit == 0);
 }
 
-static void each_error_says_this(void **state) {
-  (void)state;
+TEST(each_error_says_this) {
   static const struct {
     const char *text, *report;
   } cases[] = {
@@ -236,8 +234,7 @@ static void each_error_says_this(void **state) {
 }
 
 /* All errors of the file, in the order of its lines, whichever check found them. */
-static void all_errors_in_one_go(void **state) {
-  (void)state;
+TEST(all_errors_in_one_go) {
   const char *text = "shape: dsic\nbody:\n  length: 3 kg\n  cuont: 3\n  limit: \"12 %\"\nbroken: no\nbroken: "
                      "off\ncontact: {law: off, speed: 3 m/s}\nnmae: x\n";
   assert_int_equal(differs(text, strlen(text),
@@ -266,8 +263,7 @@ static void all_errors_in_one_go(void **state) {
                    0);
 }
 
-static void long_lines_and_many_errors_stay_readable(void **state) {
-  (void)state;
+TEST(long_lines_and_many_errors_stay_readable) {
   char text[6000] = "name: x\n";
   struct thing thing;
   size_t used = strlen(text);
@@ -301,8 +297,7 @@ static void long_lines_and_many_errors_stay_readable(void **state) {
 }
 
 /* A table read from a part of a document: paths are those of the document. */
-static void parts_have_whole_paths(void **state) {
-  (void)state;
+TEST(parts_have_whole_paths) {
   struct document *document;
   struct thing thing;
   struct field_value value;
@@ -341,8 +336,7 @@ static void parts_have_whole_paths(void **state) {
   document_free(document);
 }
 
-static void trees_are_walked(void **state) {
-  (void)state;
+TEST(trees_are_walked) {
   struct document *document;
   const char *text = "vary:\n  a.b: [1, 2 m]\n  c: {from: 1, too: 2}\nset: 3\nextra: 4\n", *key, *report;
   assert_int_equal(document_parse("a.yaml", text, strlen(text), &document, NULL), STATUS_OK);
@@ -378,8 +372,7 @@ static void trees_are_walked(void **state) {
 }
 
 /* Values added by the caller are read like those of the file; the text of the changed document contains them. */
-static void values_are_put(void **state) {
-  (void)state;
+TEST(values_are_put) {
   static const char text[] = "# a comment\nbody: {length: 2 m, count: 5}\nname: 'a: b'\nset:\n  x: [1 %, off]\n";
   struct document *document = NULL, *again = NULL;
   struct error error = {0};
@@ -412,14 +405,4 @@ static void values_are_put(void **state) {
   document_report(document_key(document_root(document), "name"), "name", "is wrong, too");
   assert_int_equal(document_finish(document, &report), STATUS_CONTENT);
   document_free(document);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(good_documents_are_read), cmocka_unit_test(each_error_says_this),
-      cmocka_unit_test(all_errors_in_one_go),    cmocka_unit_test(long_lines_and_many_errors_stay_readable),
-      cmocka_unit_test(parts_have_whole_paths),  cmocka_unit_test(trees_are_walked),
-      cmocka_unit_test(values_are_put),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

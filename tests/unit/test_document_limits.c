@@ -2,8 +2,7 @@
 #include "tests/support/document_thing.h"
 
 /* RFC 3629: what is UTF-8 and what is not, one byte sequence at a time in the place of a name's last letters. */
-static void utf8_is_judged_strictly(void **state) {
-  (void)state;
+TEST(utf8_is_judged_strictly) {
   static const struct {
     const char *bytes;
     bool good;
@@ -48,8 +47,7 @@ static double seconds(void) {
 }
 
 /* Adversarial sizes give an error message, and soon. */
-static void limits_hold(void **state) {
-  (void)state;
+TEST(limits_hold) {
   struct thing thing;
   double start = seconds();
   size_t size = (4 << 20) + 1;
@@ -103,8 +101,7 @@ static void limits_hold(void **state) {
   assert_true(seconds() - start < 60);
 }
 
-static void files_that_are_none(void **state) {
-  (void)state;
+TEST(files_that_are_none) {
   struct document *document = (struct document *)&document;
   struct error error;
   assert_int_equal(document_open("no_such_file.yaml", &document, &error), STATUS_MISSING);
@@ -128,13 +125,4 @@ static void files_that_are_none(void **state) {
   }
   unlink(path);
   document_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(utf8_is_judged_strictly),
-      cmocka_unit_test(limits_hold),
-      cmocka_unit_test(files_that_are_none),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,7 @@ static void near(double got, double want, double relative, const char *what) {
 
 /* ---- bins ---- */
 
-static void sums_by_hand(void **state) {
-  (void)state;
+TEST(sums_by_hand) {
   static const double speed[] = {0, 1e-9, 1, 1.2, 9.9, 10, 1e9, NAN, INFINITY};
   struct ejecta e = {.bin = {{0, 0}}};
   for (int i = 0; i < 9; i++)
@@ -32,8 +31,7 @@ static void sums_by_hand(void **state) {
 
 /* M(>v) = M (v/v0)^-s with s = 3 mu and mu = 0.55, that of dense rock and water, made of particles of one mass: each
  * edge has the law's mass within one particle, and two decades have its slope. */
-static void a_power_law(void **state) {
-  (void)state;
+TEST(a_power_law) {
   enum { N = 1000000 };
   const double slope = 3 * 0.55, slowest = 0.5;
   struct ejecta e = {.bin = {{0, 0}}};
@@ -154,8 +152,7 @@ static void expect_means(const char *path, const char *by) {
   free(ejecta);
 }
 
-static void means_of_a_store(void **state) {
-  (void)state;
+TEST(means_of_a_store) {
   char path[64], half[64], other[64];
   struct store *store = NULL;
   add_runs(fixture_path(path, "ejecta"), 0, 4);
@@ -195,8 +192,7 @@ static void means_of_a_store(void **state) {
 
 /* A store of version 4 has no such table. It is read as it is, keeps all its runs when it is written, and a row that
  * was lost before is still seen: bringing it forward gives no digest anew. */
-static void version_4_is_brought_forward(void **state) {
-  (void)state;
+TEST(version_4_is_brought_forward) {
   static const char older[] = "DROP TABLE ejecta; DELETE FROM column_doc WHERE table_name = 'ejecta'; "
                               "PRAGMA user_version = 4";
   for (int lost = 0; lost < 2; lost++) {
@@ -235,11 +231,4 @@ static void version_4_is_brought_forward(void **state) {
     add_runs(path, 0, 4); /* and takes runs with ejecta */
     expect_means(path, NULL);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(sums_by_hand), cmocka_unit_test(a_power_law),
-                                     cmocka_unit_test(means_of_a_store),
-                                     cmocka_unit_test(version_4_is_brought_forward)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"
 
 /* Few different masses tell no exponent, however many fragments there are: of one run, of runs together, and of what is
  * left without one run. */
-static void few_masses_tell_nothing(void **state) {
-  (void)state;
+TEST(few_masses_tell_nothing) {
   double masses[200];
   for (size_t i = 0; i < 200; i++)
     masses[i] = i < 20 ? 40 : i < 90 ? 20 : 10 * (1 + 1e-9 * (double)(i % 2));
@@ -29,8 +27,7 @@ static void few_masses_tell_nothing(void **state) {
   assert_true(isfinite(pooled.fit.beta) && isnan(pooled.interval.half_width));
 }
 
-static void rows_of_a_run(void **state) {
-  (void)state;
+TEST(rows_of_a_run) {
   /* 60 resolved fragments of 100/1..100/60 x 3 grains each, 140 grains of dust; every grain 2 kg. */
   struct fragment fragments[200] = {0};
   double total = 0, grains = 0;
@@ -76,8 +73,7 @@ static void rows_of_a_run(void **state) {
       assert_true(complete[i].fit.beta == rows[i].fit.beta && complete[i].fit.n == rows[i].fit.n);
 }
 
-static void nothing_to_fit(void **state) {
-  (void)state;
+TEST(nothing_to_fit) {
   struct estimate rows[ESTIMATES_COUNT];
   struct fragment whole = {.mass = 5, .count = 1000},
                   dust[3] = {{.mass = 1, .count = 1}, {.mass = 1, .count = 1}, {.mass = 1, .count = 1}};
@@ -94,8 +90,7 @@ static void nothing_to_fit(void **state) {
 
 /* The line through four filled bins of five, by hand: an empty one and one at the window's end do not count. Least
  * squares has a window of a decade, the other methods reach up to the largest mass. */
-static void least_squares_by_hand(void **state) {
-  (void)state;
+TEST(least_squares_by_hand) {
   const struct spectrum_bin_row rows[] = {{0, 1000, 0}, {1, 500, 0}, {2, 300, 0}, {4, 20, 0}, {5, 7, 0}};
   struct exponent fit;
   assert_int_equal(exponent_fit_bins(5, rows, 0, (struct exponent_window){1, spectrum_edge(5)}, &fit, NULL), STATUS_OK);
@@ -110,8 +105,7 @@ static void least_squares_by_hand(void **state) {
 /* Masses that are whole numbers of an element, as often as m^-2 says: m from N - 1/2 to N + 1/2 gives N. Bins hold one,
  * one or two whole numbers. Over their own widths the line has a slope of 1.81, over those of the numbers the right
  * one. The same masses as real numbers are fitted as before. */
-static void whole_masses_have_their_exponent(void **state) {
-  (void)state;
+TEST(whole_masses_have_their_exponent) {
   enum { N = 20000 };
   const double element = 1;
   double *masses = malloc(N * sizeof *masses), *real = malloc(N * sizeof *real);
@@ -141,8 +135,7 @@ static void whole_masses_have_their_exponent(void **state) {
   free(real);
 }
 
-static void equal_masses_have_no_exponent(void **state) {
-  (void)state;
+TEST(equal_masses_have_no_exponent) {
   double masses[50];
   for (int i = 0; i < 50; i++)
     masses[i] = 3;
@@ -156,8 +149,7 @@ static void equal_masses_have_no_exponent(void **state) {
   }
 }
 
-static void bad_windows_are_refused(void **state) {
-  (void)state;
+TEST(bad_windows_are_refused) {
   double masses[5] = {1, 2, 3, 4, 5};
   const struct exponent_window windows[] = {{0, 1}, {-1, 1}, {2, 2}, {3, 2}, {NAN, 2}, {1, NAN}, {HUGE_VAL, HUGE_VAL}};
   struct exponent fit;
@@ -166,18 +158,4 @@ static void bad_windows_are_refused(void **state) {
     assert_int_equal(exponent_fit(EXPONENT_MASSES, 5, masses, windows[w], &fit, &error), STATUS_USAGE);
   assert_int_equal(exponent_fit((enum exponent_method)17, 5, masses, (struct exponent_window){1, 2}, &fit, &error),
                    STATUS_USAGE);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(few_masses_tell_nothing),
-      cmocka_unit_test(rows_of_a_run),
-      cmocka_unit_test(nothing_to_fit),
-      cmocka_unit_test(least_squares_by_hand),
-      cmocka_unit_test(whole_masses_have_their_exponent),
-      cmocka_unit_test(equal_masses_have_no_exponent),
-      cmocka_unit_test(bad_windows_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

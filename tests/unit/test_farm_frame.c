@@ -15,8 +15,7 @@ static void append(struct farm_bytes *bytes, uint64_t handle, size_t size) {
 }
 
 /* Delivered in pieces of every small size: the same frames, payloads aligned. */
-static void any_cut(void **state) {
-  (void)state;
+TEST(any_cut) {
   struct farm_bytes whole = {0};
   for (uint64_t i = 0; i < 40; i++)
     append(&whole, i, (size_t)(i * i * 7));
@@ -50,8 +49,7 @@ static void any_cut(void **state) {
 }
 
 /* A change of any single bit of a frame is detected, except in padding, which carries no data. */
-static void any_flipped_bit(void **state) {
-  (void)state;
+TEST(any_flipped_bit) {
   struct farm_bytes bytes = {0};
   append(&bytes, 5, 100);
   for (size_t bit = 0; bit < 8 * (sizeof(struct farm_frame) + 100); bit++) {
@@ -69,8 +67,7 @@ static void any_flipped_bit(void **state) {
   farm_frame_free(&bytes);
 }
 
-static void foreign_and_oversized(void **state) {
-  (void)state;
+TEST(foreign_and_oversized) {
   struct farm_bytes bytes = {0};
   struct farm_frame frame = {.magic = FARM_FRAME_MAGIC + (1u << 24), .kind = FARM_FRAME_TASK}; /* version 2 */
   const uint8_t *payload;
@@ -86,8 +83,7 @@ static void foreign_and_oversized(void **state) {
   assert_false(farm_frame_append(&bytes, FARM_FRAME_TASK, 0, 1, 1, &(struct iovec){&byte, FARM_FRAME_LARGEST + 1}));
 }
 
-static void handles_are_never_used_twice(void **state) {
-  (void)state;
+TEST(handles_are_never_used_twice) {
   struct farm_job_table table = {0};
   uint64_t old = 0;
   struct farm_job *kept[200];
@@ -114,8 +110,7 @@ static void handles_are_never_used_twice(void **state) {
   farm_job_table_free(&table);
 }
 
-static void queues_keep_order(void **state) {
-  (void)state;
+TEST(queues_keep_order) {
   struct farm_job_queue queue = {0};
   for (uint64_t i = 1; i <= 5; i++)
     farm_job_push(&queue, farm_job_new(i, NULL, 0));
@@ -135,8 +130,7 @@ static void queues_keep_order(void **state) {
 }
 
 /* A rank that waits sleeps twice as long each time, up to 5 ms, and within half a second up to 10 ms. */
-static void sleeps_grow_to_their_end(void **state) {
-  (void)state;
+TEST(sleeps_grow_to_their_end) {
   int64_t sleep = FARM_SLEEP_LEAST_NS, slept = 0;
   for (; sleep < FARM_SLEEP_USUAL_NS; sleep = farm_sleep_longer(sleep), slept += sleep)
     assert_int_equal(farm_sleep_longer(sleep), 2 * sleep);
@@ -146,14 +140,4 @@ static void sleeps_grow_to_their_end(void **state) {
   }
   assert_int_equal(sleep, FARM_SLEEP_MOST_NS);
   assert_int_equal(farm_sleep_longer(sleep), FARM_SLEEP_MOST_NS);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(any_cut),
-                                     cmocka_unit_test(any_flipped_bit),
-                                     cmocka_unit_test(foreign_and_oversized),
-                                     cmocka_unit_test(handles_are_never_used_twice),
-                                     cmocka_unit_test(queues_keep_order),
-                                     cmocka_unit_test(sleeps_grow_to_their_end)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

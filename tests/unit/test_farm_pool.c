@@ -32,8 +32,7 @@ static void assert_each_once(const struct task_list *list) {
   assert_int_equal(list->wrong, 0);
 }
 
-static void same_answers_whatever_the_slots(void **state) {
-  (void)state;
+TEST(same_answers_whatever_the_slots) {
   uint64_t expected = 0;
   for (uint64_t id = 0; id < 500; id++)
     expected += task_value(id);
@@ -50,8 +49,7 @@ static void same_answers_whatever_the_slots(void **state) {
   }
 }
 
-static void no_tasks_and_fewer_than_slots(void **state) {
-  (void)state;
+TEST(no_tasks_and_fewer_than_slots) {
   for (size_t count = 0; count < 3; count++) {
     struct task_list list;
     struct error error = {0};
@@ -62,8 +60,7 @@ static void no_tasks_and_fewer_than_slots(void **state) {
   }
 }
 
-static void every_ending(void **state) {
-  (void)state;
+TEST(every_ending) {
   const double limit_s = 2; /* much longer than the end of a process under sanitizers, which looks for leaks */
   for (int mode = 0; mode < 2; mode++) {
     struct task_list list;
@@ -111,8 +108,7 @@ static void every_ending(void **state) {
   }
 }
 
-static void large_results(void **state) {
-  (void)state;
+TEST(large_results) {
   for (int mode = 0; mode < 2; mode++) {
     struct task_list list;
     struct error error = {0};
@@ -128,8 +124,7 @@ static void large_results(void **state) {
 }
 
 /* CPU and memory are those of the task, not of earlier tasks in the slot. */
-static void costs_are_the_tasks_own(void **state) {
-  (void)state;
+TEST(costs_are_the_tasks_own) {
   for (int mode = 0; mode < 2; mode++) {
     struct task_list list;
     struct error error = {0};
@@ -150,8 +145,7 @@ static void costs_are_the_tasks_own(void **state) {
   }
 }
 
-static void the_caller_can_stop(void **state) {
-  (void)state;
+TEST(the_caller_can_stop) {
   const status reasons[] = {STATUS_STOPPED, STATUS_IO};
   for (int reason = 0; reason < 2; reason++) {
     for (int mode = 0; mode < 2; mode++) {
@@ -176,8 +170,7 @@ static void the_caller_can_stop(void **state) {
   }
 }
 
-static void runs_again_after_a_run(void **state) {
-  (void)state;
+TEST(runs_again_after_a_run) {
   struct farm *farm = start((struct farm_options){.slots = 2});
   for (int round = 0; round < 3; round++) {
     struct task_list list;
@@ -193,8 +186,7 @@ static void runs_again_after_a_run(void **state) {
 }
 
 /* The last short tasks do not wait behind a long one that started earlier. */
-static void nobody_waits_behind_a_long_task(void **state) {
-  (void)state;
+TEST(nobody_waits_behind_a_long_task) {
   for (int mode = 0; mode < 2; mode++) {
     struct task_list list;
     struct error error = {0};
@@ -223,8 +215,7 @@ static status counting_work(const uint8_t *bytes, size_t size, uint8_t **result,
 }
 
 /* A task taken back from a busy slot and run elsewhere stays in that slot's channel: the slot must skip it. */
-static void computed_once_though_taken_back(void **state) {
-  (void)state;
+TEST(computed_once_though_taken_back) {
   for (int mode = 0; mode < 2; mode++) {
     times_computed = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     assert_true(times_computed != MAP_FAILED);
@@ -258,8 +249,7 @@ static int open_files(void) {
   return count;
 }
 
-static void leaks_nothing(void **state) {
-  (void)state;
+TEST(leaks_nothing) {
   const bool full = getenv("CLAST_FULL") != NULL;
   for (int mode = 0; mode < 2; mode++) {
     const size_t count = (full ? 100000U : mode ? 5000U : 500U) / (SANITIZED ? 10U : 1U);
@@ -291,8 +281,7 @@ static void leaks_nothing(void **state) {
   }
 }
 
-static void asleep_while_tasks_sleep(void **state) {
-  (void)state;
+TEST(asleep_while_tasks_sleep) {
   struct task_list list;
   struct error error = {0};
   task_list_new(&list, 2);
@@ -313,21 +302,4 @@ static void asleep_while_tasks_sleep(void **state) {
   assert_true(usage.manager_cpu_s < 0.2 * usage.wall_s);
   assert_in_range(list.ticks, 10, 21); /* every 100 ms at most, and not much less often */
   task_list_free(&list);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_answers_whatever_the_slots),
-      cmocka_unit_test(no_tasks_and_fewer_than_slots),
-      cmocka_unit_test(every_ending),
-      cmocka_unit_test(large_results),
-      cmocka_unit_test(costs_are_the_tasks_own),
-      cmocka_unit_test(the_caller_can_stop),
-      cmocka_unit_test(runs_again_after_a_run),
-      cmocka_unit_test(nobody_waits_behind_a_long_task),
-      cmocka_unit_test(computed_once_though_taken_back),
-      cmocka_unit_test(leaks_nothing),
-      cmocka_unit_test(asleep_while_tasks_sleep),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

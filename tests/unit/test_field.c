@@ -99,8 +99,7 @@ static const struct field *row(const char *path) {
   return found;
 }
 
-static void defaults_fill_everything(void **state) {
-  (void)state;
+TEST(defaults_fill_everything) {
   struct thing thing;
   memset(&thing, 0xAA, sizeof thing);
   field_defaults(&table, &thing);
@@ -113,8 +112,7 @@ static void defaults_fill_everything(void **state) {
   assert_int_equal(thing.unlisted, 7); /* a member without a row is not changed */
 }
 
-static void finds_by_suffix(void **state) {
-  (void)state;
+TEST(finds_by_suffix) {
   struct error error = {0};
   assert_ptr_equal(field_find(&table, "body.count", &error), &rows[3]);
   assert_ptr_equal(field_find(&table, "count", &error), &rows[3]);
@@ -137,8 +135,7 @@ static void finds_by_suffix(void **state) {
   assert_null(field_find(&table, "", &error));
 }
 
-static void distances_count_slips(void **state) {
-  (void)state;
+TEST(distances_count_slips) {
   assert_int_equal(text_distance("kitten", 6, "sitting"), 3);
   assert_int_equal(text_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
   assert_int_equal(text_distance("", 0, "abc"), 3);
@@ -151,8 +148,7 @@ static void distances_count_slips(void **state) {
 }
 
 /* A stream that makes a text: right after each flush and at the end, however long. */
-static void texts_grow(void **state) {
-  (void)state;
+TEST(texts_grow) {
   enum { LINES = 3000 };
   char *text, line[32];
   size_t size;
@@ -183,8 +179,7 @@ static void texts_grow(void **state) {
 
 /* How many slips a word may have, by its number of letters, and the guess that follows: `near` has as many slips as are
  * allowed, `far` one more. A name that shares no letter with the word is no guess, however short both are. */
-static void guesses_by_length(void **state) {
-  (void)state;
+TEST(guesses_by_length) {
   static const struct {
     const char *typed, *near, *far;
     size_t limit;
@@ -224,8 +219,7 @@ static void guesses_by_length(void **state) {
   assert_ptr_equal(guess.nearest, whole);
 }
 
-static void conditions_chain(void **state) {
-  (void)state;
+TEST(conditions_chain) {
   struct thing thing;
   char why[200];
   field_defaults(&table, &thing);
@@ -251,8 +245,7 @@ static void conditions_chain(void **state) {
   assert_false(field_is_active(&round, &circular[0], &thing)); /* ends */
 }
 
-static void parses_or_says_why(void **state) {
-  (void)state;
+TEST(parses_or_says_why) {
   static const struct {
     const char *path, *text, *shown, *message; /* either `shown` or `message` */
   } cases[] = {
@@ -317,8 +310,7 @@ static void parses_or_says_why(void **state) {
 }
 
 /* For most people a strain of 5 means 5 %, for a program 500 %. */
-static void percentages_are_written_as_such(void **state) {
-  (void)state;
+TEST(percentages_are_written_as_such) {
   const struct field strain =
       {.path = "strain", .kind = FIELD_REAL, .unit = "1", .minimum = 1e-9, .maximum = 1e3, .flags = FIELD_PERCENT};
   static const struct {
@@ -347,8 +339,7 @@ static void percentages_are_written_as_such(void **state) {
   assert_string_equal(error.message, "strain: expected at least 1e-7 and at most 100000 %, got 2e6 %");
 }
 
-static void sets_what_suits(void **state) {
-  (void)state;
+TEST(sets_what_suits) {
   struct thing thing;
   struct error error = {0};
   field_defaults(&table, &thing);
@@ -383,8 +374,7 @@ static void sets_what_suits(void **state) {
   assert_string_equal(error.message, "body.length: expected a number, got text");
 }
 
-static void json_and_identity(void **state) {
-  (void)state;
+TEST(json_and_identity) {
   struct thing thing;
   field_defaults(&table, &thing);
   thing.needed = -1.5e-7;
@@ -416,8 +406,7 @@ static void json_and_identity(void **state) {
 
 /* An input that came later is left out of the identity while it has the value that runs had before it, whatever its
  * default is today. */
-static void absent_values_leave_the_identity(void **state) {
-  (void)state;
+TEST(absent_values_leave_the_identity) {
   static const struct field later[] = {
       {.path = "angle", .kind = FIELD_REAL, .unit = "rad", AT(angle), .number = 2, .maximum = 9, .absent = "0"},
       {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken), .number = 1, .maximum = 1, .absent = "false"},
@@ -442,8 +431,7 @@ static void absent_values_leave_the_identity(void **state) {
   free(text);
 }
 
-static void explains(void **state) {
-  (void)state;
+TEST(explains) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
@@ -489,8 +477,7 @@ static void random_thing(uint64_t *word, struct thing *thing) {
   }
 }
 
-static void bytes_round_trip(void **state) {
-  (void)state;
+TEST(bytes_round_trip) {
   uint64_t word = 88172645463325252u;
   for (int i = 0; i < 2000; i++) {
     struct thing thing, back;
@@ -511,8 +498,7 @@ static void bytes_round_trip(void **state) {
   }
 }
 
-static void bytes_are_pinned_and_guarded(void **state) {
-  (void)state;
+TEST(bytes_are_pinned_and_guarded) {
   struct pair {
     double x;
     int law;
@@ -564,24 +550,4 @@ static void bytes_are_pinned_and_guarded(void **state) {
   bytes[18] = 1;
   assert_int_equal(field_decode(&small, bytes, size, &back), size);
   assert_string_equal(back.name, "hi");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(defaults_fill_everything),
-      cmocka_unit_test(finds_by_suffix),
-      cmocka_unit_test(distances_count_slips),
-      cmocka_unit_test(guesses_by_length),
-      cmocka_unit_test(texts_grow),
-      cmocka_unit_test(conditions_chain),
-      cmocka_unit_test(parses_or_says_why),
-      cmocka_unit_test(percentages_are_written_as_such),
-      cmocka_unit_test(sets_what_suits),
-      cmocka_unit_test(json_and_identity),
-      cmocka_unit_test(absent_values_leave_the_identity),
-      cmocka_unit_test(explains),
-      cmocka_unit_test(bytes_round_trip),
-      cmocka_unit_test(bytes_are_pinned_and_guarded),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

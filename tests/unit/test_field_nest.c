@@ -110,8 +110,7 @@ static const struct field *row(const char *path) {
   return NULL;
 }
 
-static void rows_stand_in_order_at_their_places(void **state) {
-  (void)state;
+TEST(rows_stand_in_order_at_their_places) {
   static const struct {
     const char *path;
     size_t offset;
@@ -141,8 +140,7 @@ static void rows_stand_in_order_at_their_places(void **state) {
   }
 }
 
-static void conditions_are_relative_to_the_table_of_their_row(void **state) {
-  (void)state;
+TEST(conditions_are_relative_to_the_table_of_their_row) {
   assert_string_equal(row("target.radius")->when, "target.shape=sphere");
   assert_string_equal(row("target.rock.strength")->when, "target.solid=true"); /* ../ */
   assert_string_equal(row("speed.step")->when, "target.solid=true");           /* from the root */
@@ -162,8 +160,7 @@ static void conditions_are_relative_to_the_table_of_their_row(void **state) {
   assert_false(field_is_active(&scene, row("projectile.shape"), &object));
 }
 
-static void a_nest_changes_its_rows(void **state) {
-  (void)state;
+TEST(a_nest_changes_its_rows) {
   struct scene object;
   memset(&object, 0, sizeof object);
   field_defaults(&scene, &object);
@@ -175,13 +172,4 @@ static void a_nest_changes_its_rows(void **state) {
   assert_string_equal(row("projectile.rock.grain")->doc, "Grain of the projectile. The named rock's unless given.");
   assert_int_equal(row("target.rock.strength")->flags, FIELD_DERIVED); /* no longer required */
   assert_int_equal(row("target.radius")->flags, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_stand_in_order_at_their_places),
-      cmocka_unit_test(conditions_are_relative_to_the_table_of_their_row),
-      cmocka_unit_test(a_nest_changes_its_rows),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,8 +10,7 @@
 
 enum { N = 60 };
 
-static void labels_match_flood_fill(void **state) {
-  (void)state;
+TEST(labels_match_flood_fill) {
   for (uint64_t seed = 0; seed < 200; seed++) {
     double mass[N];
     uint32_t links[N][2], label[N];
@@ -52,8 +51,7 @@ static void labels_match_flood_fill(void **state) {
   }
 }
 
-static void order_of_links_does_not_matter(void **state) {
-  (void)state;
+TEST(order_of_links_does_not_matter) {
   const double mass[5] = {1, 1, 1, 1, 1};
   const uint32_t links[3][2] = {{0, 4}, {4, 2}, {1, 3}}, reversed[3][2] = {{3, 1}, {2, 4}, {4, 0}};
   uint32_t a[5], b[5];
@@ -69,8 +67,7 @@ static void near(double a, double b) {
     fail_msg("%.17g is not %.17g", a, b);
 }
 
-static void dumbbell(void **state) {
-  (void)state;
+TEST(dumbbell) {
   /* masses 1 and 3 turning as one body at 2 rad/s about their centre of mass, which moves at (5, -1); a third grain
    * apart. Reduced mass 0.75 at distance sqrt(20): I = 15 + own moments. */
   const struct fragment_member members[3] =
@@ -117,10 +114,4 @@ static void dumbbell(void **state) {
   free(f);
   assert_int_equal(fragments_find(false, 0, NULL, 0, NULL, NULL, &f, &count, NULL), STATUS_OK);
   assert_null(f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(labels_match_flood_fill),
-                                     cmocka_unit_test(order_of_links_does_not_matter), cmocka_unit_test(dumbbell)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

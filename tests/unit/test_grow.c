@@ -5,8 +5,7 @@
 #include "engine/grow.h"
 #include "tests/support/check.h"
 
-static void items_stay_and_the_room_doubles(void **state) {
-  (void)state;
+TEST(items_stay_and_the_room_doubles) {
   double *values = NULL;
   size_t room = 0, moves = 0;
   for (size_t i = 0; i < 10000; i++) {
@@ -22,8 +21,7 @@ static void items_stay_and_the_room_doubles(void **state) {
   free(values);
 }
 
-static void a_large_need_is_met_at_once(void **state) {
-  (void)state;
+TEST(a_large_need_is_met_at_once) {
   char *text = NULL;
   size_t room = 0;
   assert_true(grow_room(&text, &room, 100000, 1));
@@ -34,8 +32,7 @@ static void a_large_need_is_met_at_once(void **state) {
   free(text);
 }
 
-static void without_memory_the_array_stays(void **state) {
-  (void)state;
+TEST(without_memory_the_array_stays) {
   char *text = NULL;
   size_t room = 0;
   assert_true(grow_room(&text, &room, 1, 1));
@@ -47,8 +44,7 @@ static void without_memory_the_array_stays(void **state) {
   free(text);
 }
 
-static void aligned_arrays_keep_what_is_asked_for(void **state) {
-  (void)state;
+TEST(aligned_arrays_keep_what_is_asked_for) {
   uint32_t *values = NULL;
   size_t room = 0;
   assert_true(grow_aligned(&values, &room, 800, sizeof *values, 0));
@@ -65,14 +61,4 @@ static void aligned_arrays_keep_what_is_asked_for(void **state) {
   assert_false(grow_aligned(&values, &room, SIZE_MAX / 16, sizeof *values, 10));
   assert_int_equal(values[9], 9);
   free(values);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(items_stay_and_the_room_doubles),
-      cmocka_unit_test(a_large_need_is_met_at_once),
-      cmocka_unit_test(aligned_arrays_keep_what_is_asked_for),
-      cmocka_unit_test(without_memory_the_array_stays),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,4 @@
 /* The algebra of fits against closed forms: linear models with normal errors, whose posteriors are known. */
-#include "analysis/analysis.h"
 #include "analysis/inference/inference.h"
 #include "tests/support/check.h"
 #include "tests/support/inference_cases.h"
@@ -7,8 +6,7 @@
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 /* y = 2 z0 - z1, error 0.5: precision I + [4 -2; -2 1] / 0.25, mean = covariance . (2, -1) y / 0.25. */
-static void kalman_gives_the_posterior_of_a_linear_model(void **state) {
-  (void)state;
+TEST(kalman_gives_the_posterior_of_a_linear_model) {
   enum { MEMBERS = 4000 };
   static double z[MEMBERS * 2], g[MEMBERS];
   const double y = 1.5, gamma = 0.25;
@@ -35,8 +33,7 @@ static void kalman_gives_the_posterior_of_a_linear_model(void **state) {
   assert_near(square[1] - mean[1] * mean[1], 1 - 1 / 5.25, 0.1);
 }
 
-static void kalman_replaces_failed_members(void **state) {
-  (void)state;
+TEST(kalman_replaces_failed_members) {
   double z[6] = {-1, 0, 1, 9, 9, 9}, g[6] = {-1, 0, 1, NAN, NAN, NAN}, y = 0, gamma = 1;
   struct ensemble_kalman e = {.members = 6, .inputs = 1, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
   struct error error;
@@ -78,8 +75,7 @@ static struct seed_scatter_runs sample(struct sampled *s, uint64_t seed, double 
                                     .values = s->values};
 }
 
-static void scatter_of_seeds_is_recovered(void **state) {
-  (void)state;
+TEST(scatter_of_seeds_is_recovered) {
   static struct sampled s;
   struct seed_scatter fit;
   struct error error;
@@ -106,8 +102,7 @@ static void scatter_of_seeds_is_recovered(void **state) {
 
 /* Three counts of a point, 1 or 2, are equal in four of ten points or more. Their variance is p (1 - p).
  * The worst of the 120 variances is off by a factor of 1.5; a line through the logarithms is off by 236. */
-static void equal_counts_are_no_certainty(void **state) {
-  (void)state;
+TEST(equal_counts_are_no_certainty) {
   static struct sampled s;
   struct seed_scatter fit;
   struct error error;
@@ -135,8 +130,7 @@ static void equal_counts_are_no_certainty(void **state) {
 
 /* Where nothing breaks, all runs are equal: here beyond `whole`. Elsewhere the standard deviation is 1. A line cannot
  * show both, but it must not be drawn to 0 where the runs scatter, nor rise without end on their far side. */
-static void equal_runs_do_not_hide_the_scatter_of_others(void **state) {
-  (void)state;
+TEST(equal_runs_do_not_hide_the_scatter_of_others) {
   static struct sampled s;
   struct seed_scatter fit;
   struct error error;
@@ -161,8 +155,7 @@ static void equal_runs_do_not_hide_the_scatter_of_others(void **state) {
   }
 }
 
-static void scatter_knows_two_heaps_and_too_few_runs(void **state) {
-  (void)state;
+TEST(scatter_knows_two_heaps_and_too_few_runs) {
   static struct sampled s;
   struct seed_scatter fit;
   struct error error;
@@ -195,8 +188,7 @@ static struct kriging *surface_of(size_t n, const double *x, const double *y, do
   return k;
 }
 
-static void kriging_passes_through_a_smooth_function(void **state) {
-  (void)state;
+TEST(kriging_passes_through_a_smooth_function) {
   enum { N = 15 };
   double x[N], y[N], variance;
   for (size_t i = 0; i < N; i++) {
@@ -218,8 +210,7 @@ static void kriging_passes_through_a_smooth_function(void **state) {
 }
 
 /* The mean of N noisy values of a constant: its variance is own/N + shared. */
-static void kriging_knows_what_seeds_leave(void **state) {
-  (void)state;
+TEST(kriging_knows_what_seeds_leave) {
   enum { N = 40 };
   double x[N], y[N], alone, together, errors[N], squares = 0;
   for (size_t i = 0; i < N; i++) {
@@ -242,8 +233,7 @@ static void kriging_knows_what_seeds_leave(void **state) {
 
 /* Values so noisy that they tell nothing leave the priors: the middle of the values everywhere, with the variance 1 of
  * the process and 10 (1 + x^2) of the trend, in variances of the values; the error of a point over its noise. */
-static void kriging_of_noise_keeps_its_priors(void **state) {
-  (void)state;
+TEST(kriging_of_noise_keeps_its_priors) {
   const double x[3] = {-1, 0, 1}, y[3] = {1, 3, 8}, noise = 1e10, scale = sqrt(13); /* of 1, 3, 8 about 4 */
   double variance, errors[3];
   struct kriging *k = surface_of(3, x, y, noise, 0);
@@ -264,8 +254,7 @@ static double linear(const double *u, size_t k, uint64_t seed) {
          0.3 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), 2 * (uint64_t)(u[1] * 0x1p52) + k);
 }
 
-static void posterior_is_that_of_a_linear_model(void **state) {
-  (void)state;
+TEST(posterior_is_that_of_a_linear_model) {
   static struct case_fit fit;
   struct error error;
   const bool bounded[2] = {false, false};
@@ -302,8 +291,7 @@ static void posterior_is_that_of_a_linear_model(void **state) {
 /* Data that a ridge far narrower than a grid's cell explains, and that a second place far from it misses by six
  * standard deviations or more: a sample of the posterior has nothing there, whichever way its walkers begin. d = (z0 -
  * z1) / 2 is 1 on the ridge and -1 at the other place. */
-static void a_sample_leaves_a_lower_maximum(void **state) {
-  (void)state;
+TEST(a_sample_leaves_a_lower_maximum) {
   enum { SIDE = 11, N = SIDE * SIDE };
   static double x[2 * N], y[2][N], noise[N * N];
   struct error error;
@@ -345,8 +333,7 @@ static void a_sample_leaves_a_lower_maximum(void **state) {
 }
 
 /* Statistics of four nodes by hand, of either input. */
-static void statistics_of_weighted_nodes(void **state) {
-  (void)state;
+TEST(statistics_of_weighted_nodes) {
   double z[] = {0, 3, 10, -1, 20, 1, 30, -1}, weight[] = {0.1, 0.2, 0.4, 0.3}, mean[2], c[4];
   const struct posterior nodes = {.count = 4, .inputs = 2, .z = z, .weight = weight};
   static const struct {
@@ -390,8 +377,7 @@ static struct kriging *plane_of(const double slope[3]) {
 
 /* 3 z0 + 4 z1 known within 0.5, s z2 within 1: information 100 along (3, 4, 0)/5, s^2 along z2, none along (4, -3,
  * 0)/5. With both values 0 the posterior is normal about 0, of variance 1/(1 + information) along each. */
-static void directions_of_a_linear_model(void **state) {
-  (void)state;
+TEST(directions_of_a_linear_model) {
   static const double slopes[2] = {2, 0.8}; /* more information than the prior's 1, and less */
   for (int c = 0; c < 2; c++) {
     const double s = slopes[c];
@@ -433,8 +419,7 @@ static void directions_of_a_linear_model(void **state) {
 }
 
 /* y = z^2, known within 0.5, at 64 nodes: information (2 z)^2 / 0.25, whose median is that of the two in the middle. */
-static void information_is_a_median_over_nodes(void **state) {
-  (void)state;
+TEST(information_is_a_median_over_nodes) {
   enum { POINTS_OF_CURVE = 9, MIDDLE = 64 / 2 };
   double x[POINTS_OF_CURVE], y[POINTS_OF_CURVE], z[64], weight[64];
   for (size_t i = 0; i < POINTS_OF_CURVE; i++) {
@@ -472,8 +457,7 @@ static double ring(const double *u, size_t k, uint64_t seed) {
          0.004 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), (uint64_t)(u[1] * 0x1p52));
 }
 
-static void ridges_are_seen(void **state) {
-  (void)state;
+TEST(ridges_are_seen) {
   static struct case_fit fit;
   struct identify found;
   struct error error;
@@ -509,8 +493,7 @@ static double steep_and_flat(const double *u, size_t k, uint64_t seed) {
 }
 
 /* Along a ridge of 3 z0 + z1 the inputs change as -1 to 3, even if its middle is steeper. */
-static void ridges_follow_unequal_slopes(void **state) {
-  (void)state;
+TEST(ridges_follow_unequal_slopes) {
   static struct case_fit fit;
   struct identify found;
   struct error error;
@@ -536,8 +519,7 @@ static double five(const double *u, size_t k, uint64_t seed) {
   return sum + 0.2 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), 8 * (uint64_t)(u[1] * 0x1p52) + k);
 }
 
-static void five_inputs_are_sampled(void **state) {
-  (void)state;
+TEST(five_inputs_are_sampled) {
   static struct case_fit fit;
   struct posterior_datum data[5];
   struct error error;
@@ -557,16 +539,9 @@ static void five_inputs_are_sampled(void **state) {
   case_clear(&fit);
 }
 
-static int start(void **state) {
-  (void)state;
-  analysis_init();
-  return 0;
-}
-
 /* Of two outputs with three points. One run of the second point has no first output, and the third point has too few
  * runs. Deviations: first output -1, 0, 1 and -1, 1; second one -2, 0, 2 and -1, 0. So 5 / sqrt(4 x 9). */
-static void correlation_of_two_outputs(void **state) {
-  (void)state;
+TEST(correlation_of_two_outputs) {
   const double first[9] = {1, 2, 3, 10, 12, NAN, 100, NAN, NAN}, second[9] = {2, 4, 6, 5, 6, 7, 1, 2, 3};
   const struct seed_scatter_runs a = {.points = 3, .replicates = 3, .values = first};
   const struct seed_scatter_runs b = {.points = 3, .replicates = 3, .values = second};
@@ -579,8 +554,7 @@ static void correlation_of_two_outputs(void **state) {
 
 /* Three points with two runs each: the runs of the first output lie at -1 and 1 about the mean (variance 2), those of
  * the second at -2 and 2 (variance 8), and the seeds act alike (0.98 in place of a correlation of 1). */
-static void errors_of_data_by_hand(void **state) {
-  (void)state;
+TEST(errors_of_data_by_hand) {
   const double z[3] = {-1, 0, 1}, values[12] = {4, 6, 1, 3, 7, 9, 0, 4, 1, 5, 8, 12};
   const struct surfaces_runs runs = {.points = 3, .inputs = 1, .outputs = 2, .replicates = 2, .z = z, .values = values};
   const bool bounded[1] = {false};
@@ -598,8 +572,7 @@ static void errors_of_data_by_hand(void **state) {
 }
 
 /* A point with one run takes no part: the surface is that of the others. */
-static void points_of_one_run_are_left_out(void **state) {
-  (void)state;
+TEST(points_of_one_run_are_left_out) {
   enum { ALL = 5 };
   double z[ALL] = {-1, -0.5, 0.5, 1, 0}, values[2 * ALL];
   const struct posterior_datum data = {.value = 1, .error = 1, .specimens = 1};
@@ -619,30 +592,4 @@ static void points_of_one_run_are_left_out(void **state) {
     surfaces_clear(&surfaces);
   }
   assert_true(at[0] == at[1]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(kalman_gives_the_posterior_of_a_linear_model),
-      cmocka_unit_test(kalman_replaces_failed_members),
-      cmocka_unit_test(scatter_of_seeds_is_recovered),
-      cmocka_unit_test(correlation_of_two_outputs),
-      cmocka_unit_test(errors_of_data_by_hand),
-      cmocka_unit_test(points_of_one_run_are_left_out),
-      cmocka_unit_test(equal_counts_are_no_certainty),
-      cmocka_unit_test(equal_runs_do_not_hide_the_scatter_of_others),
-      cmocka_unit_test(a_sample_leaves_a_lower_maximum),
-      cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
-      cmocka_unit_test(kriging_passes_through_a_smooth_function),
-      cmocka_unit_test(kriging_knows_what_seeds_leave),
-      cmocka_unit_test(kriging_of_noise_keeps_its_priors),
-      cmocka_unit_test(statistics_of_weighted_nodes),
-      cmocka_unit_test(directions_of_a_linear_model),
-      cmocka_unit_test(information_is_a_median_over_nodes),
-      cmocka_unit_test(posterior_is_that_of_a_linear_model),
-      cmocka_unit_test(ridges_are_seen),
-      cmocka_unit_test(ridges_follow_unequal_slopes),
-      cmocka_unit_test(five_inputs_are_sampled),
-  };
-  return cmocka_run_group_tests(tests, start, NULL);
 }

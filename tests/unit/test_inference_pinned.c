@@ -1,7 +1,6 @@
 /* Whole fits of three made-up models, pinned in inference.txt (tests/support/pinned.h): with bounds and without, with
  * specimens, errors and shots, on a grid and sampled. test_inference judges what the numbers mean; this test says that
  * they stay. */
-#include "analysis/analysis.h"
 #include "analysis/inference/inference.h"
 #include "tests/support/inference_cases.h"
 #include "tests/support/pinned.h"
@@ -75,8 +74,7 @@ static void fit(const char *name, case_model model, size_t inputs, size_t output
   case_clear(&fit);
 }
 
-static void fits_stay(void **state) {
-  (void)state;
+TEST(fits_stay) {
   static const bool bounded[INFERENCE_INPUTS] = {true, false, true}, loose[INFERENCE_INPUTS] = {false};
   char *text = NULL;
   size_t size = 0;
@@ -105,10 +103,4 @@ static void fits_stay(void **state) {
   fclose(out);
   pinned_same("unit/inference.txt", text, 1e-5); /* surfaces are optimised to some 1e-7 */
   free(text);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(fits_stay)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

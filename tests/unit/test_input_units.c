@@ -38,8 +38,7 @@ static void refuses_bare_numbers(const struct field *row) {
   }
 }
 
-static void inputs_with_a_unit_refuse_bare_numbers(void **state) {
-  (void)state;
+TEST(inputs_with_a_unit_refuse_bare_numbers) {
   for (size_t e = 0; e < engine_count(); e++) {
     const struct field_table *inputs = engine_at(e)->inputs;
     size_t tried = 0;
@@ -54,8 +53,7 @@ static void inputs_with_a_unit_refuse_bare_numbers(void **state) {
 }
 
 /* field.absent is text: the compiler does not see a choice that is not there, or a number out of range. */
-static void values_of_absence_are_values(void **state) {
-  (void)state;
+TEST(values_of_absence_are_values) {
   size_t tried = 0;
   for (size_t e = 0; e < engine_count(); e++) {
     const struct field_table *const tables[] = {engine_at(e)->inputs, engine_at(e)->results, &outcome_table};
@@ -77,8 +75,7 @@ static void values_of_absence_are_values(void **state) {
 }
 
 /* field.when is text that nests make: a row whose condition names nothing would never be active. */
-static void conditions_name_rows_and_their_values(void **state) {
-  (void)state;
+TEST(conditions_name_rows_and_their_values) {
   size_t tried = 0;
   for (size_t e = 0; e < engine_count(); e++) {
     const struct field_table *inputs = engine_at(e)->inputs;
@@ -103,13 +100,4 @@ static void conditions_name_rows_and_their_values(void **state) {
     }
   }
   assert_true(tried >= 100);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(inputs_with_a_unit_refuse_bare_numbers),
-      cmocka_unit_test(values_of_absence_are_values),
-      cmocka_unit_test(conditions_name_rows_and_their_values),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static void near(double a, double b) {
   assert_true(fabs(a - b) <= 1e-12 * fabs(b));
 }
 
-static void the_three_kinds(void **state) {
-  (void)state;
+TEST(the_three_kinds) {
   struct measured m;
   assert_int_equal(read_text("\xef\xbb\xbf# source: a paper (1991)\r\n# complete from: 2 g\r\nname;mass (g)\r\n"
                              "a;5\r\nb;1.5\r\n\r\nc;7\r\n",
@@ -69,8 +68,7 @@ static void the_three_kinds(void **state) {
 }
 
 /* The masses of a two-dimensional scene are per metre of depth; those of bodies are told. */
-static void two_dimensions(void **state) {
-  (void)state;
+TEST(two_dimensions) {
   static const struct spectrum_size flat = {0, 2};
   struct measured m;
   assert_int_equal(read_text("# complete from: 1 g/m\nmass (g/m), retained (kg/m)\n2,1\n4,3\n", &flat, &m), STATUS_OK);
@@ -85,8 +83,7 @@ static void two_dimensions(void **state) {
   assert_non_null(strstr(error.message, "kg/m"));
 }
 
-static void bad_files(void **state) {
-  (void)state;
+TEST(bad_files) {
   static const struct {
     const char *text, *says;
   } bad[] = {
@@ -150,8 +147,7 @@ static void bad_files(void **state) {
 }
 
 /* What laboratories write: the same masses or numbers in several forms. */
-static void forms_of_laboratories(void **state) {
-  (void)state;
+TEST(forms_of_laboratories) {
   static const struct {
     const char *text;
     bool single, weighed;
@@ -193,8 +189,7 @@ static void one_to_four(size_t runs, size_t *first, double *masses) {
 
 /* A sieve table compares shares of mass. Runs of masses 1, 2, 3, 4: shares of the mass from 1, 2, 3, 4 kg on are 1,
  * 0.9, 0.7, 0.4. */
-static void sieves(void **state) {
-  (void)state;
+TEST(sieves) {
   enum { RUNS = MATCH_RUNS };
   size_t first[RUNS + 1];
   double masses[4 * RUNS];
@@ -243,8 +238,7 @@ static void sieves(void **state) {
 
 /* The bins of single fragments hold all of the axis from the complete mass to the heaviest: so many fragments per kg
  * are in the list. */
-static void empty_bins_count(void **state) {
-  (void)state;
+TEST(empty_bins_count) {
   struct measured m;
   struct pooled_bin *bins;
   size_t count;
@@ -262,8 +256,7 @@ static void empty_bins_count(void **state) {
 }
 
 /* Runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */
-static void distances(void **state) {
-  (void)state;
+TEST(distances) {
   enum { RUNS = MATCH_RUNS };
   size_t first[RUNS + 1];
   double masses[4 * RUNS];
@@ -314,8 +307,7 @@ static void distances(void **state) {
 
 /* One experiment that is a run like the others: its distance is as large as that of a share of the runs which is
  * uniform in 0..1, so its mean is a half. */
-static void a_run_among_runs(void **state) {
-  (void)state;
+TEST(a_run_among_runs) {
   enum { RUNS = 21, EACH = 30, CASES = 40 };
   static double masses[RUNS * EACH];
   size_t first[RUNS + 1];
@@ -343,8 +335,7 @@ static void a_run_among_runs(void **state) {
 
 /* Runs of three fragments beside a specimen of 30: their own distances are chance, those of ten runs together are not.
  * A specimen of the same law has shares that are uniform in 0..1; one of a steeper law, N ~ m^-2 for m^-1, differs. */
-static void a_specimen_with_more_fragments_than_a_run(void **state) {
-  (void)state;
+TEST(a_specimen_with_more_fragments_than_a_run) {
   enum { RUNS = 80, EACH = 3, MEASURED = 30, CASES = 60 };
   static double masses[RUNS * EACH];
   size_t first[RUNS + 1];
@@ -382,8 +373,7 @@ static void a_specimen_with_more_fragments_than_a_run(void **state) {
 
 /* A count from a stranger's file that no number of runs reaches gives no verdict. Runs of 1.6 specimens are not joined:
  * a draw with more fragments than the specimen is nearer by chance. */
-static void runs_are_joined_with_care(void **state) {
-  (void)state;
+TEST(runs_are_joined_with_care) {
   enum { RUNS = 40 };
   size_t first[RUNS + 1];
   double masses[4 * RUNS];
@@ -398,18 +388,4 @@ static void runs_are_joined_with_care(void **state) {
     assert_int_equal(match.together, together[i]);
     assert_true(isnan(match.share) == (i > 2) && match.needed >= MATCH_RUNS);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds),
-                                     cmocka_unit_test(two_dimensions),
-                                     cmocka_unit_test(bad_files),
-                                     cmocka_unit_test(forms_of_laboratories),
-                                     cmocka_unit_test(sieves),
-                                     cmocka_unit_test(empty_bins_count),
-                                     cmocka_unit_test(distances),
-                                     cmocka_unit_test(a_run_among_runs),
-                                     cmocka_unit_test(a_specimen_with_more_fragments_than_a_run),
-                                     cmocka_unit_test(runs_are_joined_with_care)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

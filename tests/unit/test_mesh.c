@@ -39,8 +39,7 @@ static void near(double value, double expected, double error) {
   assert_true(fabs(value - expected) <= error);
 }
 
-static void cube_in_all_forms(void **state) {
-  (void)state;
+TEST(cube_in_all_forms) {
   struct mesh *m = read_text(cube);
   assert_int_equal(m->faces, 12);
   near(m->volume, 1, 1e-15);
@@ -64,8 +63,7 @@ static void cube_in_all_forms(void **state) {
   mesh_free(m);
 }
 
-static void tetrahedron_of_words(void **state) {
-  (void)state;
+TEST(tetrahedron_of_words) {
   struct mesh *m = read_text(tetrahedron);
   near(m->volume, 36, 1e-13);
   for (int k = 0; k < 3; k++)
@@ -147,8 +145,7 @@ static char *write_ball(int format, bool inside_out, size_t *size) {
 }
 
 /* Texts have 9 digits of the floats. */
-static void formats_agree(void **state) {
-  (void)state;
+TEST(formats_agree) {
   struct mesh *first = NULL;
   for (int format = 0; format < 3; format++)
     for (int inside_out = 0; inside_out < 2; inside_out++) {
@@ -173,8 +170,7 @@ static void formats_agree(void **state) {
 
 /* Inside and distance of the ball against its chords: faces lie between the radii r and 1. */
 /* Bytes behind the last face, as some programs write them, are not read, and the mesh knows their number. */
-static void binary_file_with_a_tail(void **state) {
-  (void)state;
+TEST(binary_file_with_a_tail) {
   static const char tail[] = "\0exported by a program\n";
   size_t size;
   struct mesh *plain, *longer;
@@ -197,8 +193,7 @@ static void binary_file_with_a_tail(void **state) {
 }
 
 /* A backslash joins the next line of an OBJ file. Comments end with their line, and places in messages count all. */
-static void obj_lines_go_on(void **state) {
-  (void)state;
+TEST(obj_lines_go_on) {
   struct mesh *m = read_text("# made in C:\\models\\\n"
                              "v 0 \\\n 0 0\nv 6\\\r\n 0 \\  \n\\\n 0\nv 0 6 0\nv 0 0 6 # C:\\\n"
                              "f 1 3 \\\n2\nf 1\\\n 2\\\n 4\nf 1 4 3\nf \\\n2 3 4");
@@ -207,8 +202,7 @@ static void obj_lines_go_on(void **state) {
   mesh_free(m);
 }
 
-static void ball_inside_and_distance(void **state) {
-  (void)state;
+TEST(ball_inside_and_distance) {
   size_t size;
   struct mesh *m;
   struct error error;
@@ -276,8 +270,7 @@ static void refused(const char *text, size_t size, const char *part) {
   assert_null(mesh);
 }
 
-static void parts_and_cavities(void **state) {
-  (void)state;
+TEST(parts_and_cavities) {
   char *hollow = two_cubes(1, 0, true), *apart = two_cubes(1, 3, false);
   struct mesh *m = read_text(hollow);
   near(m->volume, 7, 1e-13);
@@ -302,8 +295,7 @@ static void parts_and_cavities(void **state) {
   free(reversed);
 }
 
-static void refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   static const struct {
     const char *text, *part;
   } cases[] = {
@@ -349,8 +341,7 @@ static void refusals(void **state) {
 }
 
 /* A ring: the line from its centre meets nothing. */
-static void ring_is_missed(void **state) {
-  (void)state;
+TEST(ring_is_missed) {
   enum { N = 24 };
   char *text = NULL;
   size_t size;
@@ -377,8 +368,7 @@ static void ring_is_missed(void **state) {
   mesh_free(m);
 }
 
-static void files_by_content(void **state) {
-  (void)state;
+TEST(files_by_content) {
   const struct mesh_file *first, *second;
   struct error error;
   assert_int_equal(mesh_files_add("a", cube, sizeof cube - 1, &first, &error), STATUS_OK);
@@ -396,15 +386,4 @@ static void files_by_content(void **state) {
   assert_non_null(strstr(error.message, "32 MB is the most"));
   close(file);
   unlink(large);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cube_in_all_forms),       cmocka_unit_test(tetrahedron_of_words),
-      cmocka_unit_test(formats_agree),           cmocka_unit_test(ball_inside_and_distance),
-      cmocka_unit_test(parts_and_cavities),      cmocka_unit_test(refusals),
-      cmocka_unit_test(ring_is_missed),          cmocka_unit_test(files_by_content),
-      cmocka_unit_test(binary_file_with_a_tail), cmocka_unit_test(obj_lines_go_on),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Documents of measurements: the meaning of good ones and the errors of bad ones. */
+#define CHECK_OWN_MAIN
 #include <math.h>
 #include <string.h>
 
@@ -37,8 +38,7 @@ static void bad(const char *text, const char *expected) {
       fail_msg("not said: '%s'\nin the report on\n%s\n%s", part, text, error.message);
 }
 
-static void numbers_and_units(void **state) {
-  (void)state;
+TEST(numbers_and_units) {
   struct observed *m = good(
       SHOT "name: first\n    specimens: 3\n    set: {energy: 3 kJ/m}\n    measured:\n"
            "      - {quantity: largest_fraction, value: 31 %, error: 1 %, resolution: 0.05}\n"
@@ -68,8 +68,7 @@ static void numbers_and_units(void **state) {
 }
 
 /* 60, 20, 10, 5, 2.5 and 1.25 of 100: M_1/M, and numbers above 20 to 1 in four even steps of the logarithm. */
-static void masses_become_numbers(void **state) {
-  (void)state;
+TEST(masses_become_numbers) {
   struct observed *m = good(SHOT "fragments: {total: 100 g, complete: 1 g, masses: [5 g, 60 g, 1.25 g, 20 g, 10 g, 2.5 "
                                  "g], resolution: 10 %}\n");
   assert_int_equal(m->datum_count, 5);
@@ -87,8 +86,7 @@ static void masses_become_numbers(void **state) {
 
 /* Fragments of just a mass from which numbers count are in them, whatever the rounding of that mass: eight of the
  * complete mass below second fragments of many masses, and a list in which every mass is such a mass. */
-static void ties_count(void **state) {
-  (void)state;
+TEST(ties_count) {
   for (int second = 150; second < 400; second++) {
     char text[512];
     snprintf(text, sizeof text,
@@ -114,8 +112,7 @@ static void ties_count(void **state) {
   }
 }
 
-static void errors_have_a_place(void **state) {
-  (void)state;
+TEST(errors_have_a_place) {
   bad("name: t\nshots: []\n", "source|m.yaml:2|expected a list of shots");
   bad(HEAD, "expected a list of shots");
   bad(SHOT "name: s\n", "m.yaml:4|no measurement");
@@ -160,8 +157,7 @@ static void errors_have_a_place(void **state) {
 }
 
 /* The documents of the pages fit_*.md. */
-static void documents_of_the_pages_are_good(void **state) {
-  (void)state;
+TEST(documents_of_the_pages_are_good) {
   static const char *const pairs[][2] = {{"sphere-measured", "sphere-k"},
                                          {"sphere-measured", "sphere-k-measured-m"},
                                          {"sphere-measured", "sphere-m-k"},
@@ -203,8 +199,7 @@ static status create(const char *text, struct error *error) {
   return code;
 }
 
-static void campaigns_need_priors_and_seeds(void **state) {
-  (void)state;
+TEST(campaigns_need_priors_and_seeds) {
   struct error error = {0};
   assert_int_equal(create("name: t\nscene: disc-explosion\nvary: {strain: [1 %, 2 %]}\n", &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "latin_hypercube"));
@@ -235,13 +230,5 @@ static int end(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_and_units),
-      cmocka_unit_test(masses_become_numbers),
-      cmocka_unit_test(ties_count),
-      cmocka_unit_test(errors_have_a_place),
-      cmocka_unit_test(documents_of_the_pages_are_good),
-      cmocka_unit_test(campaigns_need_priors_and_seeds),
-  };
-  return cmocka_run_group_tests(tests, start, end);
+  return check_run(start, end);
 }

@@ -40,8 +40,7 @@ static status parse(struct options *options, struct command_line *parsed, struct
   return option_parse(&command, argc, argv, options, parsed, error);
 }
 
-static void test_values(void **state) {
-  (void)state;
+TEST(test_values) {
   struct options options;
   struct error error;
   struct command_line line;
@@ -64,8 +63,7 @@ static void test_values(void **state) {
   assert_true(line.help);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(test_refusals) {
   static const struct {
     const char *line, *says;
   } cases[] = {
@@ -96,8 +94,7 @@ static void test_refusals(void **state) {
   }
 }
 
-static void test_too_many(void **state) {
-  (void)state;
+TEST(test_too_many) {
   static char *argv[140];
   static char set[] = "--set", value[] = "a=1", name[] = "test";
   struct options options;
@@ -109,8 +106,7 @@ static void test_too_many(void **state) {
   assert_int_equal(option_parse(&command, 131, argv, &options, &line, &error), STATUS_USAGE);
 }
 
-static void test_nearest_name(void **state) {
-  (void)state;
+TEST(test_nearest_name) {
   const char *names[] = {"status", "stats", "spectrum"};
   assert_string_equal(option_nearest("stat", 3, names), "stats");
   assert_string_equal(option_nearest("spektrum", 3, names), "spectrum");
@@ -118,8 +114,7 @@ static void test_nearest_name(void **state) {
 }
 
 /* Of every command of the program: help names each option, has examples that call it, and lines fit a terminal. */
-static void test_help_is_whole(void **state) {
-  (void)state;
+TEST(test_help_is_whole) {
   for (size_t i = 0; i < commands_count(); i++) {
     const struct command *each = commands_all()[i];
     char *text = NULL;
@@ -167,7 +162,7 @@ static void test_help_is_whole(void **state) {
 }
 
 /* Documents that the build embeds have the form that their readers expect, wherever a writer edited them. */
-static void test_documents(void **state) {
+TEST(test_documents) {
   extern const char references_text[], glossary_text[], manual_text[];
   size_t papers = 0, words = 0;
   (void)state;
@@ -188,12 +183,4 @@ static void test_documents(void **state) {
   }
   assert_in_range(words, 20, 200);
   assert_non_null(strstr(manual_text, "\n@TABLES@\n"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_values),       cmocka_unit_test(test_refusals),      cmocka_unit_test(test_too_many),
-      cmocka_unit_test(test_nearest_name), cmocka_unit_test(test_help_is_whole), cmocka_unit_test(test_documents),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,8 +73,7 @@ static void check_means(struct store *store, sqlite3 *db) {
               number(store, "SELECT count(*) FROM points"), 0);
 }
 
-static void test_a_small_store_is_whole(void **state) {
-  (void)state;
+TEST(test_a_small_store_is_whole) {
   char path[64];
   struct store *store = filled("page-small", 25, path);
   struct ask_page *page = NULL;
@@ -97,8 +96,7 @@ static void test_a_small_store_is_whole(void **state) {
 }
 
 /* A result that is the same in all runs is left out, but not where a campaign asks for it. */
-static void test_the_quantity_of_a_campaign_is_told(void **state) {
-  (void)state;
+TEST(test_the_quantity_of_a_campaign_is_told) {
   for (int asked_for = 0; asked_for < 2; asked_for++) {
     char path[64];
     store_close(filled("page-quantity", 5, path), NULL);
@@ -122,8 +120,7 @@ static void test_the_quantity_of_a_campaign_is_told(void **state) {
   }
 }
 
-static void test_a_large_store_is_thinned(void **state) {
-  (void)state;
+TEST(test_a_large_store_is_thinned) {
   char path[64];
   enum { RUNS = 3000 };
   struct store *store = filled("page-large", RUNS, path);
@@ -156,8 +153,7 @@ static void test_a_large_store_is_thinned(void **state) {
 
 /* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: the runs are spread evenly; half of them have
  * another hardness, which is no main result. */
-static void test_two_modes_are_told(void **state) {
-  (void)state;
+TEST(test_two_modes_are_told) {
   char path[64];
   struct fixture_inputs inputs;
   struct fixture_run *f = malloc(sizeof *f);
@@ -194,8 +190,7 @@ static void test_two_modes_are_told(void **state) {
   free(f);
 }
 
-static void test_a_page_needs_a_place_for_data(void **state) {
-  (void)state;
+TEST(test_a_page_needs_a_place_for_data) {
   char path[64];
   size_t written = 0;
   fixture_path(path, "page-file");
@@ -216,13 +211,4 @@ static void test_a_page_needs_a_place_for_data(void **state) {
                             "data-of=\"0000000000000007\" class=\"store\">"
                             "H4sIAAAAAAACA0tMSgYAwkEkNQMAAAA=</script>\n<p>b</p>");
   unlink(path);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_small_store_is_whole),        cmocka_unit_test(test_the_quantity_of_a_campaign_is_told),
-      cmocka_unit_test(test_a_large_store_is_thinned),      cmocka_unit_test(test_two_modes_are_told),
-      cmocka_unit_test(test_a_page_needs_a_place_for_data),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Pictures are complete files of the right kind with ink in the right places; an error leaves no file behind. With a
  * folder as argument the pictures stay there. */
+#define CHECK_OWN_MAIN
 #include <cairo.h>
 #include <math.h>
 #include <stdio.h>
@@ -110,8 +111,7 @@ static void ink(const char *path, double *dark, double *coloured, int *width, in
   cairo_surface_destroy(surface);
 }
 
-static void fragments_are_drawn(void **state) {
-  (void)state;
+TEST(fragments_are_drawn) {
   static struct example before, after;
   make_example(&before, 0);
   make_example(&after, 0.25);
@@ -154,8 +154,7 @@ static void fragments_are_drawn(void **state) {
   fclose(svg);
 }
 
-static void spectra_are_drawn(void **state) {
-  (void)state;
+TEST(spectra_are_drawn) {
   enum { RUNS = 40, EACH = 80 };
   static double masses[2][RUNS * EACH];
   const struct pooled_form form = {0};
@@ -205,8 +204,7 @@ static void spectra_are_drawn(void **state) {
 }
 
 /* The cumulative line is the mean of the runs' N(>m). For beta 2 the law below M has N(>m) ~ 1/m - 1/M. */
-static void a_line_has_the_largest_fragments(void **state) {
-  (void)state;
+TEST(a_line_has_the_largest_fragments) {
   const struct picture_run run[] = {{4, 1, 3}, {2, 2, 0}, {0.5, 0, 0}};
   const struct picture_fit fit = {NULL, 2, 1, 4, 1, 3, run};
   const struct pooled_form form = {.cumulative = true};
@@ -216,8 +214,7 @@ static void a_line_has_the_largest_fragments(void **state) {
   assert_true(fabs(picture_spectrum_fit(&fit, &form, 3) - (1 + 3 * (1 / 3.0 - 1 / 4.0) / (1 - 1 / 4.0)) / 3) < 1e-12);
 }
 
-static void maps_are_drawn(void **state) {
-  (void)state;
+TEST(maps_are_drawn) {
   struct picture_tile points[24] = {{0}};
   for (int i = 0; i < 24; i++) {
     points[i].x = 0.01 * (i % 6 + 1);
@@ -273,8 +270,7 @@ static void maps_are_drawn(void **state) {
                    STATUS_USAGE);
 }
 
-static void profiles_are_drawn(void **state) {
-  (void)state;
+TEST(profiles_are_drawn) {
   double x[40], alpha[40], damage[40];
   for (int i = 0; i < 40; i++)
     x[i] = 0.003 * i, alpha[i] = 1.5 - 0.5 * exp(-0.1 * i), damage[i] = i < 20;
@@ -317,8 +313,7 @@ static status curves(const char *name, size_t count, const struct picture_curve 
 
 /* The frame holds all bodies before the run, also a projectile far from the target, which has no fragments; later only
  * while it is one body, so that its spray does not shrink the target. */
-static void frame_holds_the_projectile(void **state) {
-  (void)state;
+TEST(frame_holds_the_projectile) {
   enum { EACH = 125, N = EACH + 2000 };
   static double position[N][3], size[N], mass[N];
   static int64_t fragment[N], part[N];
@@ -354,8 +349,7 @@ static void frame_holds_the_projectile(void **state) {
 }
 
 /* gnuplot receives exactly the given numbers, and a gap stays a gap; the axis is logarithmic from a factor of 20. */
-static void curves_are_drawn(void **state) {
-  (void)state;
+TEST(curves_are_drawn) {
   const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95, 0.1, false},
                                       {10, 0.9, 0.85, 0.95, NAN, true},
                                       {100, 0.9, NAN, NAN, 0.2, false}};
@@ -409,8 +403,7 @@ static void curves_are_drawn(void **state) {
 }
 
 /* Bars of the resolution of two series with the same x and y do not hide each other: they are some pixels apart. */
-static void thin_bars_stand_apart(void **state) {
-  (void)state;
+TEST(thin_bars_stand_apart) {
   for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
     const struct picture_mean mean[] = {{1, 0.5, NAN, NAN, 0.1, false},
                                         {logarithmic ? 1000 : 2, 0.5, NAN, NAN, 0.1, false}};
@@ -429,8 +422,7 @@ static void thin_bars_stand_apart(void **state) {
 }
 
 /* Text from users reaches the picture as plain text: no command, no markup, no file. */
-static void hostile_text_is_text(void **state) {
-  (void)state;
+TEST(hostile_text_is_text) {
   const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
   const char *evil = "'; system('touch hacked'); `touch hacked` \"$(touch hacked)\" @x {/=99 a}_b \\n\n! touch hacked\n"
                      "\x01\xff\xc3 'end";
@@ -449,8 +441,7 @@ static void hostile_text_is_text(void **state) {
   assert_int_not_equal(access(at("hacked"), F_OK), 0);
 }
 
-static void missing_gnuplot_is_told(void **state) {
-  (void)state;
+TEST(missing_gnuplot_is_told) {
   const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
   const struct picture_curve curve = {.label = "a", .count = 2, .mean = mean};
   const struct picture_page page = {.path = "missing.png", .width = 900};
@@ -464,8 +455,7 @@ static void missing_gnuplot_is_told(void **state) {
   assert_int_not_equal(access("missing.png", F_OK), 0);
 }
 
-static void errors_leave_nothing(void **state) {
-  (void)state;
+TEST(errors_leave_nothing) {
   static struct example e;
   make_example(&e, 0.1);
   struct picture_panel panel = {.body = body_of(&e)};
@@ -546,8 +536,7 @@ static void same_cells(const char *pinned, const char *now, bool strict) {
 
 /* A small body of squares with a crack, and of two fragments and a grain far off; a cloud of particles whose fragments,
  * layers and dust are told apart; tiles of safe, warned and refused runs. */
-static void pixels_are_pinned(void **state) {
-  (void)state;
+TEST(pixels_are_pinned) {
   struct picture_body body = {.cells = 4,
                               .first_vertex = (uint32_t[]){0, 4, 8, 11, 15},
                               .vertex = (double[15][2]){{0, 0},
@@ -659,7 +648,6 @@ static void pixels_are_pinned(void **state) {
 }
 
 int main(int count, char **arguments) {
-  analysis_init();
   if (count > 1)
     snprintf(folder, sizeof folder, "%s", arguments[1]);
   else {
@@ -667,21 +655,7 @@ int main(int count, char **arguments) {
     if (!mkdtemp(folder))
       return 1;
   }
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fragments_are_drawn),
-      cmocka_unit_test(spectra_are_drawn),
-      cmocka_unit_test(a_line_has_the_largest_fragments),
-      cmocka_unit_test(maps_are_drawn),
-      cmocka_unit_test(profiles_are_drawn),
-      cmocka_unit_test(frame_holds_the_projectile),
-      cmocka_unit_test(curves_are_drawn),
-      cmocka_unit_test(thin_bars_stand_apart),
-      cmocka_unit_test(hostile_text_is_text),
-      cmocka_unit_test(missing_gnuplot_is_told),
-      cmocka_unit_test(errors_leave_nothing),
-      cmocka_unit_test(pixels_are_pinned),
-  };
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  int failed = check_run(NULL, NULL);
   if (count < 2) {
     const char *names[] = {"one.png",
                            "two.png",

@@ -20,8 +20,7 @@ static void make_heap(struct picture_cloud *cloud, struct picture_layout_disc *d
   }
 }
 
-static void none_hides_another(void **state) {
-  (void)state;
+TEST(none_hides_another) {
   static int64_t fragment[DISCS], part[DISCS];
   static struct picture_layout_disc discs[DISCS], before[DISCS];
   struct picture_cloud cloud = {.n = DISCS, .fragment = fragment, .part = part};
@@ -39,9 +38,4 @@ static void none_hides_another(void **state) {
                   hypot(discs[i].x - discs[j].x, discs[i].y - discs[j].y) > discs[i].radius + discs[j].radius);
   }
   assert_int_equal(picture_layout_apart(&cloud, 0, discs), STATUS_OK);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(none_hides_another)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

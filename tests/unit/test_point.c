@@ -1,5 +1,4 @@
 /* A point read from a store: its runs in order, without those that do not count; its estimates and picture. */
-#include "analysis/analysis.h"
 #include "db/ask/ask.h"
 #include "db/store/internal.h"
 #include "tests/support/check.h"
@@ -45,8 +44,7 @@ static double number_of(struct store *store, const char *format, ...) {
 }
 
 /* A study of the resolution uses the campaign that made the point, with its inputs. */
-static void resolution_names_the_campaign(void **state) {
-  (void)state;
+TEST(resolution_names_the_campaign) {
   char path[64];
   int64_t id;
   struct store *store = fill(path, &id);
@@ -67,8 +65,7 @@ static void resolution_names_the_campaign(void **state) {
 }
 
 /* The same statistics from three sources: C from the masses, the views' plain SQL, and the query of spectra. */
-static void views_and_c_agree(void **state) {
-  (void)state;
+TEST(views_and_c_agree) {
   char path[64];
   int64_t id;
   struct store *store = fill(path, &id);
@@ -116,8 +113,7 @@ static void views_and_c_agree(void **state) {
 }
 
 /* The rows of estimates follow the choice of runs. */
-static void chosen_runs_have_their_exponents(void **state) {
-  (void)state;
+TEST(chosen_runs_have_their_exponents) {
   char path[64];
   int64_t id;
   struct store *store = fill(path, &id);
@@ -135,8 +131,7 @@ static void chosen_runs_have_their_exponents(void **state) {
 }
 
 /* A point without a window has no exponent of any run. */
-static void no_window_no_exponents(void **state) {
-  (void)state;
+TEST(no_window_no_exponents) {
   const size_t first[] = {0, 1, 2};
   const double masses[] = {1, 1};
   double values[] = {7, 7};
@@ -146,8 +141,7 @@ static void no_window_no_exponents(void **state) {
   assert_true(isnan(values[0]) && isnan(values[1]));
 }
 
-static void runs_that_count_in_order(void **state) {
-  (void)state;
+TEST(runs_that_count_in_order) {
   char path[64];
   int64_t id;
   struct store *store = fill(path, &id);
@@ -219,8 +213,7 @@ static void runs_that_count_in_order(void **state) {
 
 /* Of an exponent the contributions of the runs are compared, seed by seed: their mean is the point's exponent, and
  * Student's interval of their mean is that of the exponent. */
-static void pairs_of_exponents(void **state) {
-  (void)state;
+TEST(pairs_of_exponents) {
   char path[64], operand[80];
   int64_t id;
   struct point_data point;
@@ -255,8 +248,7 @@ static void line(void *context, const char *text) {
 
 /* A store of the time of five methods, continued by this program: half of its runs have rows of `binned` and `ks`, and
  * other ordinals. Estimates are found by method and window, so nothing is mixed, and `check` finds no fault. */
-static void methods_of_older_stores(void **state) {
-  (void)state;
+TEST(methods_of_older_stores) {
   char path[64], problem[4000] = "";
   int64_t id;
   struct store *store = fill(path, &id);
@@ -306,8 +298,7 @@ static size_t pairs_of(const char *a, const char *b, status expected, struct ask
 }
 
 /* Points of two stores are paired by their varied inputs; points of one store only are passed over. */
-static void pairs_of_points(void **state) {
-  (void)state;
+TEST(pairs_of_points) {
   /* In the order of the first store: m = 6 with k = 1e30 and 1e31, then m = 7. The second store has three values of k
    * for each m. */
   static const int64_t same[4][2] = {{1, 1}, {2, 2}, {3, 4}, {4, 5}};
@@ -367,17 +358,4 @@ static void pairs_of_points(void **state) {
   OK(store_close(store, &error));
   assert_int_equal(pairs_of(a, b, STATUS_USAGE, rows, text), 0); /* no point in common */
   assert_non_null(strstr(error.message, "no two points have the same varied inputs"));
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(chosen_runs_have_their_exponents),
-                                     cmocka_unit_test(no_window_no_exponents),
-                                     cmocka_unit_test(runs_that_count_in_order),
-                                     cmocka_unit_test(views_and_c_agree),
-                                     cmocka_unit_test(pairs_of_points),
-                                     cmocka_unit_test(methods_of_older_stores),
-                                     cmocka_unit_test(pairs_of_exponents),
-                                     cmocka_unit_test(resolution_names_the_campaign)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,4 @@
 /* Pools of runs: by point, by an input, by a condition; their order, labels, fragments and values. */
-#include "analysis/analysis.h"
 #include "db/ask/ask.h"
 #include "tests/support/check.h"
 #include "tests/support/store_checks.h"
@@ -47,8 +46,7 @@ static struct store *fill(char path[64]) {
   return store;
 }
 
-static void pools_of_runs(void **state) {
-  (void)state;
+TEST(pools_of_runs) {
   char path[64];
   struct store *store = fill(path);
   struct seen all = {0}, by_m = {0}, some = {0}, none = {0}, one = {0}, everything = {0};
@@ -91,8 +89,7 @@ static void pools_of_runs(void **state) {
   OK(store_close(store, &error));
 }
 
-static void pools_of_values(void **state) {
-  (void)state;
+TEST(pools_of_values) {
   char path[64];
   struct store *store = fill(path);
   struct seen by_k = {0}, some = {0};
@@ -123,18 +120,10 @@ static void check_units(struct store *store, const struct ask_pool_choice *choic
   OK(ask_pools_end(&pools));
 }
 
-static void pools_as_forms(void **state) {
-  (void)state;
+TEST(pools_as_forms) {
   char path[64];
   struct store *store = fill(path);
   check_units(store, &(struct ask_pool_choice){.by = "m"});
   check_units(store, &(struct ask_pool_choice){0});
   OK(store_close(store, &error));
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(pools_of_runs), cmocka_unit_test(pools_of_values),
-                                     cmocka_unit_test(pools_as_forms)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static const uint64_t known[3][10] =
      {0x243f6a8885a308d3U, 0x13198a2e03707344U, 0xa4093822299f31d0U, 0x082efa98ec4e6c89U, 0x452821e638d01377U,
       0xbe5466cf34e90c6cU, 0xa528f45403e61d95U, 0x38c72dbd566e9788U, 0xa5a1610e72fd18b5U, 0x57bd43b5e52b7fe6U}};
 
-static void known_answers(void **state) {
-  (void)state;
+TEST(known_answers) {
   for (int t = 0; t < 3; t++) {
     philox4x64_ctr_t counter = {{known[t][0], known[t][1], known[t][2], known[t][3]}};
     philox4x64_key_t key = {{known[t][4], known[t][5]}};
@@ -32,8 +31,7 @@ static void known_answers(void **state) {
     assert_true(bits[i] == known[0][6 + i]);
 }
 
-static void mapping_is_pinned(void **state) {
-  (void)state;
+TEST(mapping_is_pinned) {
   uint64_t bits[4];
   random_bits(7, 2, 3, 4, bits);
   philox4x64_ctr_t counter = {{4, 3, 2, 0}};
@@ -44,8 +42,7 @@ static void mapping_is_pinned(void **state) {
   assert_true(random_draw(7, 2, 3, 4) == random_uniform(bits[0]));
 }
 
-static void uniforms_are_half_open(void **state) {
-  (void)state;
+TEST(uniforms_are_half_open) {
   assert_true(random_uniform(0) == 0);
   assert_true(random_uniform(UINT64_MAX) < 1);
   assert_true(random_uniform(UINT64_MAX) == 1 - 0x1p-53);
@@ -54,10 +51,4 @@ static void uniforms_are_half_open(void **state) {
     sum += random_draw(1, RANDOM_LATTICE, i, 0);
   /* standard deviation of the mean is 1/sqrt(12 n) = 0.0029: five of them */
   assert_true(sum / 10000 > 0.5 - 0.0145 && sum / 10000 < 0.5 + 0.0145);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(known_answers), cmocka_unit_test(mapping_is_pinned),
-                                     cmocka_unit_test(uniforms_are_half_open)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Files of a run of either engine: a restart file gives the same bits; a damaged one, or one of another scene or CPU
  * class, is refused. Files are complete or absent, on a full disk and after a kill. */
+#define CHECK_OWN_MAIN
 #include "tests/support/run_case.h"
 
 #include <dirent.h>
@@ -55,8 +56,7 @@ static void continues(const struct engine_kind *kind, const void *inputs) {
   unlink(in_folder("run.restart"));
 }
 
-static void restart_continues_with_the_same_bits(void **state) {
-  (void)state;
+TEST(restart_continues_with_the_same_bits) {
   const struct dem_inputs dem[] = {disc(false), disc(true),
                                    DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s",
                                             "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
@@ -149,8 +149,7 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
   assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_MISSING);
 }
 
-static void damaged_or_foreign_restart_is_refused(void **state) {
-  (void)state;
+TEST(damaged_or_foreign_restart_is_refused) {
   struct dem_inputs dem = disc(false), other_dem = dem;
   struct sph_inputs sph = sphere(), other_sph = sph;
   other_dem.threshold.strain *= 1 + 1e-15;
@@ -160,8 +159,7 @@ static void damaged_or_foreign_restart_is_refused(void **state) {
 }
 
 /* Bits differ from class to class (FMA): a run continued in another class would match neither. */
-static void restart_of_another_cpu_class_is_refused(void **state) {
-  (void)state;
+TEST(restart_of_another_cpu_class_is_refused) {
   if (cpu_class_choose() == CPU_BASELINE) {
     print_message("this machine has the baseline class only: nothing to compare\n");
     skip();
@@ -212,8 +210,7 @@ static void failed_writes_leave_nothing(const struct engine_kind *kind, const vo
   kind->free(run); /* remove_folder checks that no file is left in the folder */
 }
 
-static void failed_writes_are_one_error_and_leave_nothing(void **state) {
-  (void)state;
+TEST(failed_writes_are_one_error_and_leave_nothing) {
   const struct dem_inputs dem = disc(false);
   const struct sph_inputs sph = sphere();
   failed_writes_leave_nothing(&dem_engine, &dem);
@@ -237,8 +234,7 @@ static int beside(bool *temporary) {
 
 /* A process that only writes is killed at twenty moments: the file is always complete and of the right run. A kill may
  * leave one temporary file beside it. The next write removes this file, but not one that another process is writing. */
-static void killed_amid_a_write_the_file_is_whole(void **state) {
-  (void)state;
+TEST(killed_amid_a_write_the_file_is_whole) {
   const struct sph_inputs inputs = sphere();
   char path[200];
   snprintf(path, sizeof path, "%s", in_folder("a.restart"));
@@ -300,10 +296,5 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(restart_continues_with_the_same_bits),
-                                     cmocka_unit_test(damaged_or_foreign_restart_is_refused),
-                                     cmocka_unit_test(restart_of_another_cpu_class_is_refused),
-                                     cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing),
-                                     cmocka_unit_test(killed_amid_a_write_the_file_is_whole)};
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+  return check_run(make_folder, remove_folder);
 }

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/inference/scaling.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -50,8 +49,7 @@ static void find(size_t n, const struct scaling_run *run, struct scaling *found)
 static const double exact[SCALING_VALUES] = {CRITICAL, NU, BETA, GAMMA, CUTOFF, 3 - 1.6 / 1.8};
 
 /* Without noise and without corrections the fit is exact but for the cubic in z, which is not the law of Q. */
-static void exact_runs_give_exact_values(void **state) {
-  (void)state;
+TEST(exact_runs_give_exact_values) {
   static struct scaling_run run[ALL];
   for (int sign = -1; sign <= 1; sign += 2) {
     SCALING found;
@@ -67,8 +65,7 @@ static void exact_runs_give_exact_values(void **state) {
 }
 
 /* Runs without an order parameter leave the scatter of the others: the bars of P are wider by the root of 20/16. */
-static void runs_without_an_order(void **state) {
-  (void)state;
+TEST(runs_without_an_order) {
   static struct scaling_run run[ALL];
   SCALING all, part;
   const size_t n = make(&(struct law){SIZES, 0.05, 0, 1}, run);
@@ -84,8 +81,7 @@ static void runs_without_an_order(void **state) {
 }
 
 /* The interval has the width of the noise and holds the value; 95 % of six values may miss one. */
-static void intervals_hold_the_values(void **state) {
-  (void)state;
+TEST(intervals_hold_the_values) {
   static struct scaling_run run[ALL];
   SCALING found;
   int held = 0;
@@ -102,8 +98,7 @@ static void intervals_hold_the_values(void **state) {
 
 /* P is larger by 2/L: a fifth at the smallest size. S has no correction of its own: only x_c and nu, which Q shifts,
  * move gamma/nu. */
-static void a_correction_is_inside_the_interval(void **state) {
-  (void)state;
+TEST(a_correction_is_inside_the_interval) {
   static struct scaling_run run[ALL];
   SCALING found;
   find(make(&(struct law){SIZES, 1e-4, 2, 1}, run), run, &found);
@@ -116,8 +111,7 @@ static void a_correction_is_inside_the_interval(void **state) {
 
 /* S has a part that knows nothing of the transition: as large as the other one at L = 10. The curves are one all the
  * same. */
-static void a_regular_part_of_the_masses(void **state) {
-  (void)state;
+TEST(a_regular_part_of_the_masses) {
   static struct scaling_run run[ALL];
   SCALING found;
   const size_t n = make(&(struct law){SIZES, 0.05, 0, 1}, run);
@@ -129,8 +123,7 @@ static void a_regular_part_of_the_masses(void **state) {
   assert_true(fabs(found.value[SCALING_GAMMA].estimate - GAMMA) <= found.value[SCALING_GAMMA].half_width);
 }
 
-static void the_order_of_runs_and_the_unit_of_x_change_nothing(void **state) {
-  (void)state;
+TEST(the_order_of_runs_and_the_unit_of_x_change_nothing) {
   static struct scaling_run run[ALL], other[ALL];
   SCALING a, b;
   const size_t n = make(&(struct law){SIZES, 0.1, 0, 1}, run);
@@ -147,8 +140,7 @@ static void the_order_of_runs_and_the_unit_of_x_change_nothing(void **state) {
   }
 }
 
-static void two_sizes_are_too_few(void **state) {
-  (void)state;
+TEST(two_sizes_are_too_few) {
   static struct scaling_run run[ALL];
   SCALING found;
   find(make(&(struct law){2, 0.1, 0, 1}, run), run, &found);
@@ -159,8 +151,7 @@ static void two_sizes_are_too_few(void **state) {
 }
 
 /* The same curve of P at every size: no transition but a slope. */
-static void curves_that_do_not_cross(void **state) {
-  (void)state;
+TEST(curves_that_do_not_cross) {
   static struct scaling_run run[ALL];
   SCALING found;
   const size_t n = make(&(struct law){SIZES, 0.1, 0, 1}, run);
@@ -188,8 +179,7 @@ static void curves_that_do_not_cross(void **state) {
 
 /* Curves that cross, but are no steeper at the largest size than at the middle one; and two runs a point that scatter
  * more than the curves change. There are no values, no NaN is told as a distance, and the place of the crossing is. */
-static void runs_that_tell_no_values(void **state) {
-  (void)state;
+TEST(runs_that_tell_no_values) {
   static struct scaling_run run[ALL], some[ALL];
   static const double slope[] = {0.1, 2, 1};
   SCALING found;
@@ -227,8 +217,7 @@ static void runs_that_tell_no_values(void **state) {
 }
 
 /* The least and the largest size cross at 14, the larger ones at 12.5, where there are no runs. */
-static void a_critical_value_beyond_the_runs(void **state) {
-  (void)state;
+TEST(a_critical_value_beyond_the_runs) {
   static struct scaling_run run[ALL];
   SCALING found;
   size_t count = 0;
@@ -249,8 +238,7 @@ static void a_critical_value_beyond_the_runs(void **state) {
 }
 
 /* A body breaks into halves at a threshold of its own, or stays whole: the thresholds scatter as L^-2. */
-static void a_jump_is_told(void **state) {
-  (void)state;
+TEST(a_jump_is_told) {
   enum { VALUES = 21, BODIES = 100 };
   static struct scaling_run run[4 * VALUES * BODIES];
   SCALING found;
@@ -275,8 +263,7 @@ static void a_jump_is_told(void **state) {
 }
 
 /* The sizes cross, but P goes up and down with L by a factor of three. */
-static void curves_that_are_not_one(void **state) {
-  (void)state;
+TEST(curves_that_are_not_one) {
   static struct scaling_run run[ALL];
   SCALING found;
   const size_t n = make(&(struct law){SIZES, 0.05, 0, 1}, run);
@@ -289,8 +276,7 @@ static void curves_that_are_not_one(void **state) {
 }
 
 /* Whole bodies have no other fragment: S and T are 0. */
-static void whole_bodies_count(void **state) {
-  (void)state;
+TEST(whole_bodies_count) {
   static struct scaling_run run[ALL];
   SCALING found;
   const size_t n = make(&(struct law){SIZES, 0.1, 0, 1}, run);
@@ -302,24 +288,4 @@ static void whole_bodies_count(void **state) {
   find(n, run, &found);
   assert_int_equal(found.runs, ALL);
   assert_int_equal(found.kind, SCALING_FOUND);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(exact_runs_give_exact_values),
-      cmocka_unit_test(runs_without_an_order),
-      cmocka_unit_test(intervals_hold_the_values),
-      cmocka_unit_test(a_correction_is_inside_the_interval),
-      cmocka_unit_test(the_order_of_runs_and_the_unit_of_x_change_nothing),
-      cmocka_unit_test(two_sizes_are_too_few),
-      cmocka_unit_test(curves_that_do_not_cross),
-      cmocka_unit_test(a_regular_part_of_the_masses),
-      cmocka_unit_test(a_critical_value_beyond_the_runs),
-      cmocka_unit_test(runs_that_tell_no_values),
-      cmocka_unit_test(a_jump_is_told),
-      cmocka_unit_test(curves_that_are_not_one),
-      cmocka_unit_test(whole_bodies_count),
-  };
-  analysis_init();
-  return cmocka_run_group_tests_name("scaling_fit", tests, NULL, NULL);
 }

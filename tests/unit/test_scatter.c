@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -11,8 +10,7 @@ static double normal(uint64_t a, uint64_t b, uint64_t c) {
   return sqrt(-2 * log1p(-random_draw(21, a, b, 2 * c))) * cos(2 * M_PI * random_draw(21, a, b, 2 * c + 1));
 }
 
-static void known_samples(void **state) {
-  (void)state;
+TEST(known_samples) {
   double x[101];
   struct scatter s;
   for (int i = 0; i <= 100; i++)
@@ -50,8 +48,7 @@ static void known_samples(void **state) {
 }
 
 /* Samples in one panel have bins of one width: the median of their own, of those whose values differ. */
-static void one_width(void **state) {
-  (void)state;
+TEST(one_width) {
   double x[3][100];
   struct scatter s[4];
   const double alike[3] = {20, 20, 20};
@@ -74,8 +71,7 @@ static void one_width(void **state) {
     scatter_release(&s[k]);
 }
 
-static void two_modes(void **state) {
-  (void)state;
+TEST(two_modes) {
   double x[60];
   struct scatter s;
   for (uint64_t i = 0; i < 60; i++) /* a bridge that holds in a quarter of the runs */
@@ -92,8 +88,7 @@ static void two_modes(void **state) {
 }
 
 /* Counts around 7 +- 2 look like a comb: no modes are reported. Counts of thousands may have two. */
-static void counts_in_few_steps(void **state) {
-  (void)state;
+TEST(counts_in_few_steps) {
   double x[200];
   struct scatter s;
   for (uint64_t i = 0; i < 200; i++)
@@ -109,8 +104,7 @@ static void counts_in_few_steps(void **state) {
   scatter_release(&s);
 }
 
-static void runs_for_an_interval(void **state) {
-  (void)state;
+TEST(runs_for_an_interval) {
   /* t(n - 1) s / sqrt(n) <= h: n = 18 for s = 1, h = 0.5: t(17) = 2.1098, 2.1098/sqrt(18) = 0.4973; n = 17: 0.5142 */
   assert_int_equal(scatter_runs_needed(1, 0.5), 18);
   assert_int_equal(scatter_runs_needed(2, 1), 18);
@@ -122,8 +116,7 @@ static void runs_for_an_interval(void **state) {
 }
 
 /* The number is where the interval of a table first is narrow enough, and where the rule ends a point. */
-static void runs_for_an_interval_are_those_of_tables_and_of_the_rule(void **state) {
-  (void)state;
+TEST(runs_for_an_interval_are_those_of_tables_and_of_the_rule) {
   enum { MOST = 4000 };
   const double mean = 0.12, widths[] = {0.03, 0.01, 0.004};
   double x[MOST];
@@ -160,8 +153,7 @@ static void runs_for_an_interval_are_those_of_tables_and_of_the_rule(void **stat
 }
 
 /* 95 % intervals of the median hold it in 95 % of the samples, of a normal and of a skewed law. */
-static void coverage(void **state) {
-  (void)state;
+TEST(coverage) {
   enum { CASES = 400, N = 40 };
   const double median[2] = {0, 1};
   for (int law = 0; law < 2; law++) {
@@ -181,8 +173,7 @@ static void coverage(void **state) {
 
 /* y = 2 a + 3 b + a b + seed, a and b = -1, 0, 1 with variance 2/3 each: 8/3, 6, 4/9, and seeds of variance 4. Shared:
  * three quarters of the seeds' variance is the same in all points. */
-static void split_of_a_variance(void **state) {
-  (void)state;
+TEST(split_of_a_variance) {
   enum { A = 3, B = 3, RUNS = 400, POINTS = A * B };
   uint32_t level[POINTS * 2];
   double *value = malloc(POINTS * RUNS * sizeof *value);
@@ -234,8 +225,7 @@ static void split_of_a_variance(void **state) {
 }
 
 /* Values near the ends of double: every number is that of ordinary values times the same power of two, bit for bit. */
-static void at_the_ends_of_double(void **state) {
-  (void)state;
+TEST(at_the_ends_of_double) {
   enum { N = 60 };
   double x[N], y[N];
   for (uint64_t i = 0; i < N; i++)
@@ -279,8 +269,7 @@ static void at_the_ends_of_double(void **state) {
 }
 
 /* Small tables: variances and covariances over n - 1, products over all pairs of different runs. */
-static void split_by_hand(void **state) {
-  (void)state;
+TEST(split_by_hand) {
   static const uint32_t line[] = {0, 1}, square[] = {0, 0, 0, 1, 1, 0, 1, 1};
   static const double two[] = {1, 2, 6, 9, 4, 8}, four[] = {1, 4, 2, 6, 3, 9, 7, 2, 6, 11, 14, 17};
   static const struct {
@@ -303,8 +292,7 @@ static void split_by_hand(void **state) {
 
 /* The 95 % intervals of a split hold the true shares when few seeds, the same at all points, make a part of the
  * scatter. By the jackknife alone they held them in 0.84 to 0.90 of the cases. */
-static void shares_of_few_seeds(void **state) {
-  (void)state;
+TEST(shares_of_few_seeds) {
   enum { A = 3, B = 4, RUNS = 4, POINTS = A * B, CASES = 2000, COUNT = 5 };
   uint32_t level[POINTS * 2];
   double value[POINTS * RUNS];
@@ -332,25 +320,7 @@ static void shares_of_few_seeds(void **state) {
 }
 
 /* Tables of chi-square: 5 % quantiles 0.00393 (1 degree of freedom) and 3.940 (10). */
-static void a_deviation_of_few_values(void **state) {
-  (void)state;
+TEST(a_deviation_of_few_values) {
   assert_true(fabs(sample_deviation_factor(1) - sqrt(1 / 0.00393214)) < 1e-3);
   assert_true(fabs(sample_deviation_factor(10) - sqrt(10 / 3.940299)) < 1e-6);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_deviation_of_few_values),
-                                     cmocka_unit_test(known_samples),
-                                     cmocka_unit_test(one_width),
-                                     cmocka_unit_test(two_modes),
-                                     cmocka_unit_test(counts_in_few_steps),
-                                     cmocka_unit_test(runs_for_an_interval),
-                                     cmocka_unit_test(runs_for_an_interval_are_those_of_tables_and_of_the_rule),
-                                     cmocka_unit_test(coverage),
-                                     cmocka_unit_test(split_of_a_variance),
-                                     cmocka_unit_test(at_the_ends_of_double),
-                                     cmocka_unit_test(split_by_hand),
-                                     cmocka_unit_test(shares_of_few_seeds)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,8 +72,7 @@ static struct scene *parsed(const char *text) {
   return scene;
 }
 
-static void reads_and_fills_defaults(void **state) {
-  (void)state;
+TEST(reads_and_fills_defaults) {
   struct scene *scene = parsed("engine: tiny\nname: mine\nsource: a paper\nkind: ball\nball: {size: 3 cm}\n");
   const struct tiny *values = scene->inputs;
   assert_ptr_equal(scene->kind, &tiny);
@@ -95,8 +94,7 @@ static void reads_and_fills_defaults(void **state) {
   scene_free(NULL);
 }
 
-static void named_settings_give_inputs(void **state) {
-  (void)state;
+TEST(named_settings_give_inputs) {
   struct error error = {0};
   struct scene *scene = parsed("engine: tiny\nkind: ball\nball: {size: 3 cm}\nsettings:\n  draft: {ball.size: 5 cm}\n");
   const struct tiny *values = scene->inputs;
@@ -126,8 +124,7 @@ static void named_settings_give_inputs(void **state) {
   }
 }
 
-static void errors_come_together(void **state) {
-  (void)state;
+TEST(errors_come_together) {
   struct scene *scene = NULL;
   struct error error;
   assert_int_equal(scene_parse("t", "engine: tiny\nimpact: {speed: 3 m}\nball: {sise: 3}\n", &scene, &error),
@@ -156,8 +153,7 @@ static void errors_come_together(void **state) {
   assert_int_equal(scene_parse("t", "engine: tiny\nname: [a]\n", &scene, &error), STATUS_CONTENT);
 }
 
-static void overrides_are_checked(void **state) {
-  (void)state;
+TEST(overrides_are_checked) {
   struct scene *scene = parsed("engine: tiny\nkind: ball\nball: {size: 3 cm}\n"), *copy = scene_copy(scene);
   struct error error;
   assert_int_equal(scene_set_text(copy, "speed", "1 km/s", &error), STATUS_OK);
@@ -196,8 +192,7 @@ static void overrides_are_checked(void **state) {
   scene_free(scene);
 }
 
-static void identity_is_pinned(void **state) {
-  (void)state;
+TEST(identity_is_pinned) {
   uint8_t one[16], two[16];
   struct scene *scene = parsed("engine: tiny\nball: {size: 50 mm}\n");
   scene_identity(scene, 42, one);
@@ -227,8 +222,7 @@ static void identity_is_pinned(void **state) {
   scene_free(scene);
 }
 
-static void hash_has_known_answers(void **state) {
-  (void)state;
+TEST(hash_has_known_answers) {
   /* RFC 7693's algorithm at 16 bytes of digest; answers of Python's hashlib.blake2s(x, digest_size=16), an independent
    * implementation, for bytes 0, 1, 2, ... of these lengths: around the block size and through carries. */
   static const struct {
@@ -253,8 +247,7 @@ static void hash_has_known_answers(void **state) {
   }
 }
 
-static void files_and_names(void **state) {
-  (void)state;
+TEST(files_and_names) {
   struct scene *scene = NULL;
   struct error error;
   assert_int_equal(scene_load("no-such-scene", NULL, &scene, &error), STATUS_MISSING);
@@ -285,14 +278,4 @@ static void files_and_names(void **state) {
       assert_true(strcmp(scene_builtin_name(i - 1), scene_builtin_name(i)) < 0);
   }
   assert_null(scene_builtin_name(scene_builtin_count()));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(reads_and_fills_defaults), cmocka_unit_test(named_settings_give_inputs),
-      cmocka_unit_test(errors_come_together),     cmocka_unit_test(overrides_are_checked),
-      cmocka_unit_test(identity_is_pinned),       cmocka_unit_test(hash_has_known_answers),
-      cmocka_unit_test(files_and_names),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

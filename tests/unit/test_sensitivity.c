@@ -53,8 +53,7 @@ static double *evaluate(size_t inputs, size_t base, size_t seeds, uint64_t shift
 static const double ishigami_first[3] = {0.313905, 0.442411, 0}, ishigami_total[3] = {0.557589, 0.442411, 0.243684};
 static const double ishigami_variance = 13.844588;
 
-static void ishigami_indices(void **state) {
-  (void)state;
+TEST(ishigami_indices) {
   enum { BASE = 8192 };
   double *value = evaluate(3, BASE, 2, 1, ishigami, 0, 0);
   struct sensitivity_index index[4];
@@ -69,8 +68,7 @@ static void ishigami_indices(void **state) {
   free(value);
 }
 
-static void g_function_indices(void **state) {
-  (void)state;
+TEST(g_function_indices) {
   enum { BASE = 2048 };
   double *value = evaluate(MOST, BASE, 2, 1, g_function, 0, 0), whole = 1;
   struct sensitivity_index index[MOST + 1];
@@ -88,8 +86,7 @@ static void g_function_indices(void **state) {
 
 /* Seeds add a normal deviate: all shares become smaller, and the seed has its own share, whether its effect is the same
  * at all points or not. */
-static void the_share_of_the_seed(void **state) {
-  (void)state;
+TEST(the_share_of_the_seed) {
   enum { BASE = 1024, SEEDS = 8 };
   const double variance = ishigami_variance; /* the seed has half of the total variance */
   for (int kind = 0; kind < 2; kind++) {
@@ -114,8 +111,7 @@ static void the_share_of_the_seed(void **state) {
 
 /* Small tables, whose indices are fractions: variances and covariances over n - 1, products over all pairs of different
  * seeds, values counted from the mean of all. */
-static void indices_by_hand(void **state) {
-  (void)state;
+TEST(indices_by_hand) {
   static const double one[] = {1, 4, 2, 3, /* A, B, A with the first input of B, with the second */
                                5, 2, 7, 1};
   static const double three[] = {1, 4, 2, 6, 3, 8, 2, 9, 4, 5, 1, 3, /* of three seeds each */
@@ -151,8 +147,7 @@ static double smooth(size_t n,
  * of a product with edges, and of a smooth one, where they are narrow. A design's blocks of one group are spread
  * evenly; a jackknife that takes them as independent held Ishigami's third total in 70 of 100, and was up to 80 times
  * too wide for smooth functions. CLAST_FULL=1: 1000 designs of each number of blocks. */
-static void coverage(void **state) {
-  (void)state;
+TEST(coverage) {
   enum { INPUTS = 3, MOST_BASE = 256 };
   const int cases = getenv("CLAST_FULL") ? 1000 : 100;
   const double part[] = {1.15 * 1.15 / 12, 1 / 45.0, 0.15 * 0.15 / 12}, both = 0.09 / 144;
@@ -208,8 +203,7 @@ static void coverage(void **state) {
 }
 
 /* With one seed, noise would be in every total: it is withheld. With four it is the seed's. */
-static void one_seed_has_no_totals(void **state) {
-  (void)state;
+TEST(one_seed_has_no_totals) {
   enum { BASE = 256, SEEDS = 4 };
   for (int seeds = 1; seeds <= SEEDS; seeds += SEEDS - 1) {
     double *value = evaluate(3, BASE, (size_t)seeds, 7, ishigami, 0, sqrt(ishigami_variance));
@@ -230,8 +224,7 @@ static void one_seed_has_no_totals(void **state) {
 /* Seeds that all points share are few values: the intervals of the inputs and of the seed hold that scatter, too. Over
  * blocks alone, with two seeds, they held totals in 0.1 to 0.5 of the designs; by the jackknife over four seeds, the
  * seed's first order in 0.84. */
-static void few_shared_seeds(void **state) {
-  (void)state;
+TEST(few_shared_seeds) {
   enum { BASE = 64, INPUTS = 3, CASES = 400 };
   const double part[] = {1.15 * 1.15 / 12, 1 / 45.0, 0.15 * 0.15 / 12}, both = 0.09 / 144, alike = 0.1, own = 0.02;
   const double whole = part[0] + part[1] + part[2] + both + alike + own;
@@ -261,8 +254,7 @@ static void few_shared_seeds(void **state) {
 }
 
 /* A block: A, B, and A with one input of B. */
-static void designs(void **state) {
-  (void)state;
+TEST(designs) {
   struct design_sensitivity *design;
   double u[5][MOST];
   assert_int_equal(design_sensitivity_create(3, 16, 1, &design, NULL), STATUS_OK);
@@ -278,17 +270,4 @@ static void designs(void **state) {
   struct error error;
   assert_int_equal(design_sensitivity_create(21, 4, 1, &design, &error), STATUS_CONTENT);
   assert_int_equal(design_sensitivity_create(0, 4, 1, &design, &error), STATUS_CONTENT);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(designs),
-                                     cmocka_unit_test(ishigami_indices),
-                                     cmocka_unit_test(g_function_indices),
-                                     cmocka_unit_test(the_share_of_the_seed),
-                                     cmocka_unit_test(indices_by_hand),
-                                     cmocka_unit_test(coverage),
-                                     cmocka_unit_test(one_seed_has_no_totals),
-                                     cmocka_unit_test(few_shared_seeds)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* The reader of fields files reads no data from outside of the file. It refuses links and storage that lead elsewhere,
  * and types and shapes that clast never writes. */
+#define CHECK_OWN_MAIN
 #include <hdf5.h>
 #include <unistd.h>
 
@@ -55,8 +56,7 @@ static hid_t open_without(const char *name) {
   return file;
 }
 
-static void links_that_lead_elsewhere_are_refused(void **state) {
-  (void)state;
+TEST(links_that_lead_elsewhere_are_refused) {
   bool rows, time;
   write_file(good);
   look(good, &rows, &time);
@@ -104,8 +104,7 @@ static hid_t real(void) {
   return H5Tcopy(H5T_NATIVE_DOUBLE);
 }
 
-static void storage_outside_of_the_file_is_refused(void **state) {
-  (void)state;
+TEST(storage_outside_of_the_file_is_refused) {
   hid_t raw = layout(), virtual = layout(), space = shape(2, ROWS, 3);
   H5Pset_external(raw, "/etc/passwd", 0, sizeof points);
   refuse(real(), shape(2, ROWS, 3), raw);
@@ -114,8 +113,7 @@ static void storage_outside_of_the_file_is_refused(void **state) {
   refuse(real(), shape(2, ROWS, 3), virtual);
 }
 
-static void strange_types_and_shapes_are_refused(void **state) {
-  (void)state;
+TEST(strange_types_and_shapes_are_refused) {
   hid_t pair = H5Tcreate(H5T_COMPOUND, 16);
   H5Tinsert(pair, "x", 0, H5T_NATIVE_DOUBLE);
   H5Tinsert(pair, "y", 8, H5T_NATIVE_DOUBLE);
@@ -135,12 +133,7 @@ static void strange_types_and_shapes_are_refused(void **state) {
 int main(void) {
   close(mkstemp(good));
   close(mkstemp(bad));
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(links_that_lead_elsewhere_are_refused),
-      cmocka_unit_test(storage_outside_of_the_file_is_refused),
-      cmocka_unit_test(strange_types_and_shapes_are_refused),
-  };
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  int failed = check_run(NULL, NULL);
   unlink(good);
   unlink(bad);
   return failed;

@@ -6,8 +6,7 @@
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"
 
-static void edges_are_exact(void **state) {
-  (void)state;
+TEST(edges_are_exact) {
   for (int bin = -300; bin <= 300; bin++) {
     double edge = spectrum_edge(bin);
     assert_int_equal(spectrum_bin(edge), bin);
@@ -18,8 +17,7 @@ static void edges_are_exact(void **state) {
   }
 }
 
-static void powers_of_ten_open_their_bin(void **state) {
-  (void)state;
+TEST(powers_of_ten_open_their_bin) {
   for (int decade = -22; decade <= 22; decade++) {
     char text[16];
     snprintf(text, sizeof text, "1e%d", decade);
@@ -32,8 +30,7 @@ static void powers_of_ten_open_their_bin(void **state) {
   assert_int_equal(spectrum_bin(0.00999999), -21);
 }
 
-static void whole_range_of_doubles(void **state) {
-  (void)state;
+TEST(whole_range_of_doubles) {
   const double masses[] = {5e-324, 1e-310, 2.2250738585072014e-308, 1e-100, 1e100, 1.7976931348623157e308};
   for (size_t i = 0; i < sizeof masses / sizeof *masses; i++) {
     int bin = spectrum_bin(masses[i]);
@@ -44,8 +41,7 @@ static void whole_range_of_doubles(void **state) {
     assert_int_equal(spectrum_bin(none[i]), SPECTRUM_NO_BIN);
 }
 
-static void fill_counts_everything_in_any_order(void **state) {
-  (void)state;
+TEST(fill_counts_everything_in_any_order) {
   double masses[] = {0.5, 3e-3, 2.1e-3, 0.42, NAN, 1e-5, 0.0, 40, 2.2e-3, 1.01e-5};
   size_t n = sizeof masses / sizeof *masses;
   struct spectrum_bin_row rows[8], again[8];
@@ -67,14 +63,4 @@ static void fill_counts_everything_in_any_order(void **state) {
   assert_int_equal(spectrum_fill(n, masses, again, 4), 5);
   assert_int_equal(spectrum_fill(n, masses, NULL, 0), 5);
   assert_int_equal(spectrum_fill(0, NULL, again, 8), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(edges_are_exact),
-      cmocka_unit_test(powers_of_ten_open_their_bin),
-      cmocka_unit_test(whole_range_of_doubles),
-      cmocka_unit_test(fill_counts_everything_in_any_order),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@
 static const char *const classes[] = {"baseline", "v3", "v4"};
 
 /* R is minus epsilon times the tensile part: along the axes of a turned tensor of known principal values. */
-static void artificial_stress_opposes_tension_only(void **state) {
-  (void)state;
+TEST(artificial_stress_opposes_tension_only) {
   const double principal[3] = {3, -2, 0.5}, c = cos(0.7), s = sin(0.7),
                axis[3][3] = {{c, s, 0}, {-s * 0.6, c * 0.6, 0.8}, {s * 0.8, -c * 0.8, 0.6}};
   static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -30,8 +29,7 @@ static void artificial_stress_opposes_tension_only(void **state) {
 /* The fast form, in every class: any stress, isotropic and axisymmetric ones, none, and compression along all axes, for
  * which R is exactly zero. A dozen rotations with inverses within 2 ulp leave some 1e-15 of the largest; stresses here
  * are below 10. */
-static void opposed_stress_equals_plain_c(void **state) {
-  (void)state;
+TEST(opposed_stress_equals_plain_c) {
   enum { COUNT = 203, FIRST = 3 };
   static double stress[5][COUNT], factor[COUNT], pressure[COUNT], r[6][COUNT];
   double *out[6];
@@ -78,12 +76,4 @@ static void opposed_stress_equals_plain_c(void **state) {
     assert_true(opposed > 50 && none > 50);
   }
   unsetenv("CLAST_CPU");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(artificial_stress_opposes_tension_only),
-      cmocka_unit_test(opposed_stress_equals_plain_c),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

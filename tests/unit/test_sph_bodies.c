@@ -19,8 +19,7 @@ static const struct sph_body bar = {.shape = {.kind = SPH_SHAPE_BOX, .centre = {
                                     .h_over_spacing = 1.3};
 
 /* The sum is density x true volume to rounding: 2000 equal addends lose at most 2000 ulp, some 1e-13 of it. */
-static void masses_add_up_and_ids_follow_bodies(void **state) {
-  (void)state;
+TEST(masses_add_up_and_ids_follow_bodies) {
   struct sph_body bodies[3] = {sphere(0.03, 2000, 2700), sphere(0.003, 37, 1185), bar};
   bodies[1].shape.centre[0] = 0.0331;
   bodies[2].shape.centre[1] = 1;
@@ -49,8 +48,7 @@ static void masses_add_up_and_ids_follow_bodies(void **state) {
 }
 
 /* h^3 is proportional to the mass where particles differ. */
-static void graded_bodies_have_graded_h(void **state) {
-  (void)state;
+TEST(graded_bodies_have_graded_h) {
   struct sph_body body = bar;
   body.lattice = (struct sph_lattice){.particles = NAN,
                                       .grading = {.fine = 4e-3, .point = {0, 0, 0.2}, .radius = 0.01, .growth = 0.12}};
@@ -69,8 +67,7 @@ static void graded_bodies_have_graded_h(void **state) {
   sph_particles_free(p);
 }
 
-static void one_particle_is_a_body(void **state) {
-  (void)state;
+TEST(one_particle_is_a_body) {
   struct sph_range range;
   struct sph_particles *p = NULL;
   for (int kind = 0; kind < 3; kind++)
@@ -93,8 +90,7 @@ static void one_particle_is_a_body(void **state) {
     }
 }
 
-static void the_same_bits_each_time(void **state) {
-  (void)state;
+TEST(the_same_bits_each_time) {
   for (int kind = 0; kind < 3; kind++) {
     struct sph_body body = sphere(1, 700, 1);
     body.lattice = (struct sph_lattice){.kind = kind, .particles = 700, .turned = true, .seed = 12, .body = 1};
@@ -122,8 +118,7 @@ static void the_same_bits_each_time(void **state) {
 
 /* The gap of the surfaces is the requested one, the angle is that between flight direction and inward normal, and the
  * projectile hits. */
-static void projectiles_are_aimed(void **state) {
-  (void)state;
+TEST(projectiles_are_aimed) {
   const struct sph_shape targets[] = {
       {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 0.03},
       {.kind = SPH_SHAPE_BOX, .centre = {1, 2, 3}, .side = {0.2, 0.2, 0.2}},
@@ -159,8 +154,7 @@ static void projectiles_are_aimed(void **state) {
         }
 }
 
-static void overlaps_are_refused(void **state) {
-  (void)state;
+TEST(overlaps_are_refused) {
   struct sph_body bodies[2] = {sphere(0.03, 500, 2700), sphere(0.003, 20, 1185)};
   bodies[1].shape.centre[2] = 0.0325; /* 0.5 mm too near */
   struct sph_particles *p = NULL;
@@ -173,8 +167,7 @@ static void overlaps_are_refused(void **state) {
   sph_particles_free(p);
 }
 
-static void bodies_move(void **state) {
-  (void)state;
+TEST(bodies_move) {
   struct sph_body bodies[2] = {bar, sphere(0.05, 300, 1000)};
   bodies[1].shape.centre[0] = 3;
   struct sph_range range[2];
@@ -205,8 +198,7 @@ static void bodies_move(void **state) {
   sph_particles_free(p);
 }
 
-static void ends_are_held_and_sides_damped(void **state) {
-  (void)state;
+TEST(ends_are_held_and_sides_damped) {
   struct sph_range range;
   struct sph_particles *p = NULL;
   assert_int_equal(sph_bodies_make(&bar, 1, SPH_WITH_HELD | SPH_WITH_DAMPING, &p, &range, NULL), STATUS_OK);
@@ -230,8 +222,7 @@ static void ends_are_held_and_sides_damped(void **state) {
   sph_particles_free(p);
 }
 
-static void absurd_bodies_are_refused(void **state) {
-  (void)state;
+TEST(absurd_bodies_are_refused) {
   struct sph_particles *p = NULL;
   struct error error = {0};
   struct sph_body body = sphere(1, 1e12, 1000);
@@ -249,19 +240,4 @@ static void absurd_bodies_are_refused(void **state) {
     assert_true(fabs(range.nearest / size - range.nearest / range.spacing * cbrt(4 * M_PI / 900)) < 1e-9);
     sph_particles_free(p);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(masses_add_up_and_ids_follow_bodies),
-      cmocka_unit_test(graded_bodies_have_graded_h),
-      cmocka_unit_test(one_particle_is_a_body),
-      cmocka_unit_test(the_same_bits_each_time),
-      cmocka_unit_test(projectiles_are_aimed),
-      cmocka_unit_test(overlaps_are_refused),
-      cmocka_unit_test(bodies_move),
-      cmocka_unit_test(ends_are_held_and_sides_damped),
-      cmocka_unit_test(absurd_bodies_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

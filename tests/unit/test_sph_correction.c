@@ -51,8 +51,7 @@ static void tensor(const double value[3], double out[6]) {
 
 /* Tolerances: some ten roundings, of the determinant relative to the cube (at least 0.3 of it where it is divided by),
  * of a share whose slope is 15 over the mean's range: below 1e-14 of the largest, which is 5. */
-static void shares_between_body_and_debris(void **state) {
-  (void)state;
+TEST(shares_between_body_and_debris) {
   static const char *const classes[] = {"baseline", "v3", "v4"};
   for (int which = 0; which < 3; which++) {
     static double moment[6][CASES], old[6][CASES], gradient[9][CASES], expected[CASES][6], power[CASES], zero[CASES],
@@ -123,8 +122,7 @@ static void finish(bool turns, const double first[9], double gradient[9][CASES])
 /* Where the target spins, the gradient of a rigid rotation is that rotation, whatever the share; a particle alone keeps
  * its bits, and any gradient its trace. Tolerance: neighbours in line add 1e-9 of the trace to the moment of inertia,
  * which is at least 0.19 of it here. */
-static void rotations_stay_whole(void **state) {
-  (void)state;
+TEST(rotations_stay_whole) {
   static const double turning[9] = {0, -3, 2, 3, 0, -1, -2, 1, 0}, any[9] = {4, 1, -2, 5, -3, 7, 1, -8, 2};
   static double whole[9][CASES], plain[9][CASES];
   finish(true, turning, whole);
@@ -139,10 +137,4 @@ static void rotations_stay_whole(void **state) {
   finish(false, any, plain);
   for (int i = 0; i < CASES; i++)
     assert_true(fabs(whole[0][i] + whole[4][i] + whole[8][i] - plain[0][i] - plain[4][i] - plain[8][i]) < 1e-12);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(shares_between_body_and_debris),
-                                     cmocka_unit_test(rotations_stay_whole)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

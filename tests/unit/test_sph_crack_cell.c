@@ -23,8 +23,7 @@ static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **
 
 /* Two particles of a cell are no farther apart than the diagonal of a cube. There are as many cells as whole cubes and
  * cubes cut by the surface. Each cell has a particle. The same seed gives the same cells, another seed other cells. */
-static void cubes(void **state) {
-  (void)state;
+TEST(cubes) {
   struct sph_flaws *flaws;
   struct error error;
   struct sph_cells *cells[3];
@@ -53,8 +52,7 @@ static void cubes(void **state) {
 
 /* The weakest flaw of a cell follows Weibull's law of its volume: k V eps_1^m is an exponential number of mean 1. Cells
  * of 300 seeds, each weighted alike: the mean of n such numbers scatters by n^(-1/2). */
-static void weakest_flaw(void **state) {
-  (void)state;
+TEST(weakest_flaw) {
   const struct sph_weibull_material law = solid_basalt().weibull;
   double sum = 0, count = 0;
   for (uint64_t seed = 1; seed <= 300; seed++) {
@@ -80,8 +78,7 @@ static void weakest_flaw(void **state) {
 
 /* All particles of a cell have the same damage, to the bit, the mean stress of the cell, and the rate of damage c_g/R_s
  * with R_s of its volume. Some cells break. */
-static void shared(void **state) {
-  (void)state;
+TEST(shared) {
   struct sph_flaws *flaws;
   struct solid_case c = pulled(side / 4, 1, &flaws);
   const size_t n = c.particles->n, cells = flaws->cells->count;
@@ -126,8 +123,7 @@ static void shared(void **state) {
 }
 
 /* Cells of one particle act like particles: the same flaws up to rounding, and the same damage. */
-static void one_particle_each(void **state) {
-  (void)state;
+TEST(one_particle_each) {
   struct sph_flaws *flaws[2];
   struct solid_case c[2] = {pulled(0, 3, &flaws[0]), pulled(1e-5, 3, &flaws[1])};
   assert_int_equal(flaws[1]->cells->count, c[1].particles->n);
@@ -152,8 +148,7 @@ static void one_particle_each(void **state) {
 }
 
 /* The same bits after a restart while cells break, and with two threads. */
-static void same_bits(void **state) {
-  (void)state;
+TEST(same_bits) {
   struct sph_flaws *flaws;
   struct solid_case c = pulled(side / 4, 1, &flaws), again = c;
   again.parameters.in.fidelity.threads = 2;
@@ -169,10 +164,4 @@ static void same_bits(void **state) {
   sph_system_free(again.system);
   sph_flaws_free(flaws);
   solid_end(&c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cubes), cmocka_unit_test(weakest_flaw), cmocka_unit_test(shared),
-                                     cmocka_unit_test(one_particle_each), cmocka_unit_test(same_bits)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

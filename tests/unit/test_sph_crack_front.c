@@ -39,8 +39,7 @@ static struct solid_case pulled(int front, double arrest, struct sph_flaws **fla
 /* Reached particles lie within h of the plane. The front was there no earlier than c_g allows, and near the plane at
  * most 6 % later (from neighbour to neighbour it does not run quite straight; measured: 1.9 %) beside one step. No
  * particle near the plane is left out. (Farther from it, broken particles may have taken the tension away before.) */
-static void speed_and_plane(void **state) {
-  (void)state;
+TEST(speed_and_plane) {
   struct sph_flaws *flaws;
   size_t middle, reached = 0, broken = 0;
   struct solid_case c = pulled(SPH_CRACK_FRONT_PLANE, 0, &flaws, &middle);
@@ -96,8 +95,7 @@ static size_t count_reached(int front, double arrest, double times) {
 
 /* The front stops where the tension is less than the given share of the flaw's threshold, which is 0.9 times the load.
  * Without the module the crack stays in its particle. */
-static void tension_and_off(void **state) {
-  (void)state;
+TEST(tension_and_off) {
   assert_int_equal(count_reached(SPH_CRACK_FRONT_NONE, 0.5, 1), 1);
   assert_true(count_reached(SPH_CRACK_FRONT_PLANE, 0.5, 1) > 50);
   assert_true(count_reached(SPH_CRACK_FRONT_PLANE, 0, 0.1) > 50); /* any tension is enough */
@@ -106,8 +104,7 @@ static void tension_and_off(void **state) {
 }
 
 /* The same bits after a restart at any step as the front comes to the first neighbours, and with two threads. */
-static void same_bits(void **state) {
-  (void)state;
+TEST(same_bits) {
   struct sph_flaws *flaws;
   size_t middle;
   struct solid_case c = pulled(SPH_CRACK_FRONT_PLANE, 0, &flaws, &middle), again = c;
@@ -124,13 +121,4 @@ static void same_bits(void **state) {
   }
   sph_flaws_free(flaws);
   solid_end(&c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(speed_and_plane),
-      cmocka_unit_test(tension_and_off),
-      cmocka_unit_test(same_bits),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

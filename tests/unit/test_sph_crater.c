@@ -42,8 +42,7 @@ static void measure(const struct sph_particles *start, const struct sph_particle
   sph_crater_compaction(start, now, o, initial, results);
 }
 
-static void untouched(void **state) {
-  (void)state;
+TEST(untouched) {
   struct sph_particles *p = slab();
   struct sph_results c = {0};
   measure(p, p, &options, 2, &c);
@@ -53,8 +52,7 @@ static void untouched(void **state) {
 }
 
 /* A bowl of radius 12 mm, ejected at 20 m/s. A pit that is not connected to it does not count. */
-static void thrown_out(void **state) {
-  (void)state;
+TEST(thrown_out) {
   struct sph_particles *start = slab(), *now = slab();
   size_t count = 0;
   for (size_t i = 0; i < now->n; i++) {
@@ -88,8 +86,7 @@ static void thrown_out(void **state) {
 /* 100 particles leave: the i-th with i m/s along x and 10 m/s outwards. Sums of the table are those of the results, and
  * a bin has what its speeds say. With an escape speed of 50 m/s, those of 49 m/s and more along x leave; the hole is
  * the same. */
-static void thrown_out_at_many_speeds(void **state) {
-  (void)state;
+TEST(thrown_out_at_many_speeds) {
   struct sph_particles *start = slab(), *now = slab();
   for (size_t i = 0; i < 100; i++) {
     const size_t top = now->n - 1 - i;
@@ -118,8 +115,7 @@ static void thrown_out_at_many_speeds(void **state) {
 
 /* The same bowl where the particles are 2.5 times as coarse as at the point of impact, and all that is left has moved
  * by half a spacing: a narrow column that lost its particle so is no hole. */
-static void thrown_out_of_coarse_matter(void **state) {
-  (void)state;
+TEST(thrown_out_of_coarse_matter) {
   struct sph_particles *start = slab(), *now = slab();
   struct sph_crater_options graded = options;
   graded.spacing = 0.4e-3;
@@ -146,8 +142,7 @@ static void thrown_out_of_coarse_matter(void **state) {
 }
 
 /* A cylinder of radius 10 mm, 20 mm deep, whose pores close: it shrinks to half its height and no matter leaves. */
-static void compacted(void **state) {
-  (void)state;
+TEST(compacted) {
   struct sph_particles *start = slab(), *now = slab();
   size_t count = 0;
   for (size_t i = 0; i < now->n; i++)
@@ -181,8 +176,7 @@ static void compacted(void **state) {
 }
 
 /* A ball that is ejected completely: its crater is the ball, without the space below it. */
-static void nothing_left(void **state) {
-  (void)state;
+TEST(nothing_left) {
   struct sph_particles *start = slab(), *now = slab();
   const double radius = 14e-3;
   size_t n = 0;
@@ -205,8 +199,7 @@ static void nothing_left(void **state) {
 }
 
 /* Matter with distention below 1.01 at the start is never counted as compacted. */
-static void hardly_porous(void **state) {
-  (void)state;
+TEST(hardly_porous) {
   struct sph_particles *start = slab(), *now = slab();
   for (size_t i = 0; i < now->n; i++)
     start->distention[i] = start->rest_distention[i] = 1.005, now->rest_distention[i] = i ? 1.0049 : 1;
@@ -229,8 +222,7 @@ static void turn(double *x, double *y, double *z, const double frame[3][3], cons
 
 /* A crater with ejecta and closed pores in a face that is not horizontal is the same as in one that is. No particle
  * lies at the border of a column, where rounding would decide. */
-static void tilted(void **state) {
-  (void)state;
+TEST(tilted) {
   enum { LEVEL, TILTED, FACES, LAYERS = 40 };
   const double normal[3] = {2 / 3., -1 / 3., 2 / 3.}, shift[3] = {3e-3, 5e-3, -2e-3}, none[3] = {0, 0, 0};
   struct sph_crater_options o = options;
@@ -277,16 +269,4 @@ static void tilted(void **state) {
     near(layer[TILTED][k].depth, layer[LEVEL][k].depth, 1e-9, "layer");
     near(layer[TILTED][k].velocity, layer[LEVEL][k].velocity, 1e-9, "velocity of the layer");
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched),
-                                     cmocka_unit_test(thrown_out),
-                                     cmocka_unit_test(thrown_out_of_coarse_matter),
-                                     cmocka_unit_test(thrown_out_at_many_speeds),
-                                     cmocka_unit_test(nothing_left),
-                                     cmocka_unit_test(hardly_porous),
-                                     cmocka_unit_test(tilted),
-                                     cmocka_unit_test(compacted)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ enum { SCENES = sizeof scenes / sizeof scenes[0] };
 /* A small sphere whose run ends soon. */
 #define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
 
-static void results_table_is_whole(void **state) {
-  (void)state;
+TEST(results_table_is_whole) {
   for (size_t i = 0; i < sph_results.count; i++) {
     const struct field *row = &sph_results.rows[i];
     assert_true(strlen(row->doc) > 10);
@@ -30,8 +29,7 @@ static void results_table_is_whole(void **state) {
 }
 
 /* Every scene can be prepared at a small size, says what it models, and needs no more memory than predicted. */
-static void builtin_scenes_say_what_they_model(void **state) {
-  (void)state;
+TEST(builtin_scenes_say_what_they_model) {
   for (size_t k = 0; k < SCENES; k++) {
     struct sph_inputs inputs = SPH_CASE(scenes[k], NULL);
     char *text = sph_engine.describe(&inputs, true);
@@ -82,8 +80,7 @@ static double number_behind(const char *text, const char *words) {
 }
 
 /* The text of a projectile of one particle. */
-static void one_particle_is_no_plural(void **state) {
-  (void)state;
+TEST(one_particle_is_no_plural) {
   struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.projectile_spacing=5");
   char *text = sph_engine.describe(&inputs, true);
   assert_non_null(strstr(text, "about 1 particle, "));
@@ -91,8 +88,7 @@ static void one_particle_is_no_plural(void **state) {
 }
 
 /* The flaw strengths that explain prints are the real ones: (kV)^(-1/m), V the solid volume. */
-static void flaws_are_described(void **state) {
-  (void)state;
+TEST(flaws_are_described) {
   struct sph_inputs inputs = SPH_CASE("porous-ice", "target.material.porosity.distention=3");
   const double V = sph_derived_target_mass(&inputs) / inputs.target.material.density;
   const double want = pow(inputs.target.material.weibull.k * V, -1 / inputs.target.material.weibull.m);
@@ -113,8 +109,7 @@ static double described_speed(const struct sph_inputs *inputs) {
 
 /* The order of what options cost, and its size within the factor of two by which today's cores differ (bench_sph
  * measures it). */
-static void cost_follows_the_options(void **state) {
-  (void)state;
+TEST(cost_follows_the_options) {
   struct sph_inputs plain = SPH_CASE("basalt-sphere", NULL),
                     single = SPH_CASE("basalt-sphere", "fidelity.precision=float");
   struct sph_inputs corrected = SPH_CASE("basalt-sphere", "method.gradient_correction=true");
@@ -134,8 +129,7 @@ static double steps_over_estimate(const struct sph_inputs *in) {
 
 /* At rest the Courant limit is exact. Closed pores and a fast projectile count; the largest distention step does not.
  */
-static void steps_are_as_estimated(void **state) {
-  (void)state;
+TEST(steps_are_as_estimated) {
   const struct sph_inputs bar = SPH_CASE("elastic-bar", "fidelity.particles=300"),
                           steel = SMALL("fidelity.particles=2000", "fidelity.projectile_spacing=0.4",
                                         "projectile.material.name=steel", "impact.speed=1 km/s", "stop.end_time=20 us"),
@@ -147,8 +141,7 @@ static void steps_are_as_estimated(void **state) {
     fail_msg("%g %g %g", of_bar, of_steel, of_porous);
 }
 
-static void impact_starts_as_described(void **state) {
-  (void)state;
+TEST(impact_starts_as_described) {
   struct sph_inputs inputs = SMALL(NULL);
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
@@ -177,8 +170,7 @@ static void impact_starts_as_described(void **state) {
   sph_run_free(run);
 }
 
-static void stretch_and_vibration_start(void **state) {
-  (void)state;
+TEST(stretch_and_vibration_start) {
   struct sph_inputs rod = SPH_CASE("tensile-rod", "fidelity.particles=1500");
   struct sph_run *run;
   assert_int_equal(sph_run_create(&rod, 3, &run, NULL), STATUS_OK);
@@ -205,8 +197,7 @@ static void stretch_and_vibration_start(void **state) {
   sph_run_free(run);
 }
 
-static void chunks_and_restarts_do_not_matter(void **state) {
-  (void)state;
+TEST(chunks_and_restarts_do_not_matter) {
   char path[100];
   snprintf(path, sizeof path, "/tmp/clast_sph_engine_%d.restart", (int)getpid());
   struct sph_inputs cases[] = {
@@ -248,8 +239,7 @@ static void chunks_and_restarts_do_not_matter(void **state) {
   }
 }
 
-static void stop_rules(void **state) {
-  (void)state;
+TEST(stop_rules) {
   struct sph_inputs inputs = SMALL(NULL);
   struct ran ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
@@ -316,8 +306,7 @@ static void stop_rules(void **state) {
 
 /* The largest stress of a stretch is taken from every step, not only from the samples, which are a share of the end
  * time apart. */
-static void the_peak_does_not_hang_on_the_end_time(void **state) {
-  (void)state;
+TEST(the_peak_does_not_hang_on_the_end_time) {
   double peak[2];
   static const char *const ends[] = {"stop.end_time=20 us", "stop.end_time=300 us"};
   for (int k = 0; k < 2; k++) {
@@ -329,21 +318,4 @@ static void the_peak_does_not_hang_on_the_end_time(void **state) {
   print_message("peak stress %.10g and %.10g Pa\n", peak[0], peak[1]);
   assert_true(peak[0] > 1e7);
   assert_true(peak[0] == peak[1]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(results_table_is_whole),
-      cmocka_unit_test(the_peak_does_not_hang_on_the_end_time),
-      cmocka_unit_test(builtin_scenes_say_what_they_model),
-      cmocka_unit_test(one_particle_is_no_plural),
-      cmocka_unit_test(flaws_are_described),
-      cmocka_unit_test(cost_follows_the_options),
-      cmocka_unit_test(steps_are_as_estimated),
-      cmocka_unit_test(impact_starts_as_described),
-      cmocka_unit_test(stretch_and_vibration_start),
-      cmocka_unit_test(chunks_and_restarts_do_not_matter),
-      cmocka_unit_test(stop_rules),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* Fields files of particles: HDF5's own calls and our reader read what was written; the layout is the one that VTK and
  * ParaView open; truncated, changed and foreign files are refused. Also pictures from such files: with a folder as
  * argument they stay there. */
+#define CHECK_OWN_MAIN
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,7 @@
 #include "tests/support/sweep.h"
 
 static char folder[256];
+static bool keep_pictures; /* to look at */
 static const char *at(const char *name) {
   static char path[4][512];
   static int turn;
@@ -111,8 +113,7 @@ static void read_doubles(hid_t file, const char *name, size_t rows, size_t width
   H5Dclose(set);
 }
 
-static void what_is_written_is_what_is_read(void **state) {
-  (void)state;
+TEST(what_is_written_is_what_is_read) {
   struct sph_particles *p = shattered(6000);
   struct sph_fragments pieces = pieces_of(p);
   uint32_t *flaws = malloc(p->n * sizeof *flaws);
@@ -214,8 +215,7 @@ static void what_is_written_is_what_is_read(void **state) {
 }
 
 /* VTKHDF 1.0: what ParaView 5.11 and VTK 9.1 require. */
-static void layout_is_what_vtk_reads(void **state) {
-  (void)state;
+TEST(layout_is_what_vtk_reads) {
   struct sph_particles *p = shattered(6000); /* enough for the compressed columns */
   struct sph_fragments pieces = pieces_of(p);
   assert_int_equal(write_file(at("v.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
@@ -294,8 +294,7 @@ static void replace(const char *path, const char *name, hid_t type, int rank, hs
   H5Fclose(file);
 }
 
-static void damaged_and_foreign_files_are_refused(void **state) {
-  (void)state;
+TEST(damaged_and_foreign_files_are_refused) {
   struct sph_particles *p = shattered(500);
   struct sph_fragments pieces = pieces_of(p);
   struct picture_cloud cloud;
@@ -394,9 +393,8 @@ static unsigned char pixel(const char *path, double x,
   return (unsigned char)(sum / 81);
 }
 
-static void pictures(void **state) {
-  bool keep = *(bool *)*state;
-  struct sph_particles *p = shattered(keep ? 60000 : 8000);
+TEST(pictures) {
+  struct sph_particles *p = shattered(keep_pictures ? 60000 : 8000);
   struct sph_fragments pieces = pieces_of(p);
   struct error error = {0};
   assert_int_equal(write_file(at("p.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
@@ -437,7 +435,7 @@ static void pictures(void **state) {
   }
   cloud.value = NULL;
   /* the core of the damage picture is light, the crater dark; paper all round is white */
-  if (!keep) {
+  if (!keep_pictures) {
     assert_true(pixel(at("cut-damage.png"), 0.40, 0.55) > 150);
     assert_true(pixel(at("cut-damage.png"), 0.99, 0.99) == 255);
   }
@@ -449,7 +447,7 @@ static void pictures(void **state) {
   assert_int_equal(picture_particles(at("none.jpg"), 900, &cloud, &look, &error), STATUS_USAGE);
   struct picture_cloud none = {0};
   assert_int_equal(picture_particles(at("none.png"), 900, &none, &look, &error), STATUS_USAGE);
-  for (size_t k = 0; !keep && k < sizeof wanted / sizeof *wanted; k++)
+  for (size_t k = 0; !keep_pictures && k < sizeof wanted / sizeof *wanted; k++)
     assert_int_equal(unlink(at(wanted[k].file)), 0);
   picture_cloud_clear(&cloud);
   sph_fragments_clear(&pieces);
@@ -458,19 +456,12 @@ static void pictures(void **state) {
 }
 
 int main(int argc, char **argv) {
-  static bool keep;
-  keep = argc > 1;
-  snprintf(folder, sizeof folder, "%s", keep ? argv[1] : "/tmp/clast_sph_fields_XXXXXX");
-  if (!keep && !mkdtemp(folder))
+  keep_pictures = argc > 1;
+  snprintf(folder, sizeof folder, "%s", keep_pictures ? argv[1] : "/tmp/clast_sph_fields_XXXXXX");
+  if (!keep_pictures && !mkdtemp(folder))
     return 1;
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_written_is_what_is_read),
-      cmocka_unit_test(layout_is_what_vtk_reads),
-      cmocka_unit_test(damaged_and_foreign_files_are_refused),
-      cmocka_unit_test_prestate(pictures, &keep),
-  };
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (!keep && sweep(folder))
+  int failed = check_run(NULL, NULL);
+  if (!keep_pictures && sweep(folder))
     return 1;
   return failed;
 }

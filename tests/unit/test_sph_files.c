@@ -1,4 +1,5 @@
 /* Fields files of engine sph describe their contents and agree with what the run reports. */
+#define CHECK_OWN_MAIN
 #include "tests/support/run_case.h"
 
 #include <unistd.h>
@@ -12,8 +13,7 @@ static struct sph_inputs impact(void) {
   return SPH_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");
 }
 
-static void fields_hold_what_the_run_reports(void **state) {
-  (void)state;
+TEST(fields_hold_what_the_run_reports) {
   struct sph_inputs inputs = impact();
   struct error error = {0};
   char path[200];
@@ -67,6 +67,5 @@ static void fields_hold_what_the_run_reports(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(fields_hold_what_the_run_reports)};
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+  return check_run(make_folder, remove_folder);
 }

@@ -53,8 +53,7 @@ static size_t brute(size_t n, const double *x, const double *y, const double *z,
 
 /* On random points, on a lattice searched at its own points and half-way between them (ties), on points in a line and
  * all at one place. */
-static void nearest_is_the_nearest(void **state) {
-  (void)state;
+TEST(nearest_is_the_nearest) {
   enum { MOST = 700 };
   double x[MOST], y[MOST], z[MOST];
   uint32_t within[MOST];
@@ -91,8 +90,7 @@ static size_t drawn(size_t n) {
 
 /* Each flaw belongs to the particle nearest to its place. It is found by its strength, which is unique for ranked
  * flaws. */
-static void owners_are_nearest(void **state) {
-  (void)state;
+TEST(owners_are_nearest) {
   const struct sph_body body = sphere(300);
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
@@ -123,8 +121,7 @@ static void owners_are_nearest(void **state) {
 /* Coarse or fine, a seed means the same flaws: the same strengths at the same places. A flaw of a fine particle belongs
  * to the coarse particle nearest to its place; so both lie within a coarse particle's reach of the place, and of each
  * other. */
-static void a_seed_means_the_same_flaws(void **state) {
-  (void)state;
+TEST(a_seed_means_the_same_flaws) {
   const struct sph_body coarse = sphere(400), fine = sphere(3000);
   struct sph_range a, b;
   struct sph_particles *p = make(&coarse, 0, &a), *q = make(&fine, 0, &b);
@@ -172,8 +169,7 @@ static void a_seed_means_the_same_flaws(void **state) {
 
 /* About n (ln n + 0.58) flaws, as for random particles, plus one for each particle that got none: 0.56 with equal
  * cells, some more with those that the surface cuts: below 0.5 % of n. */
-static void particles_have_ln_n_flaws(void **state) {
-  (void)state;
+TEST(particles_have_ln_n_flaws) {
   const struct sph_body body = sphere(2000);
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
@@ -195,8 +191,7 @@ static void particles_have_ln_n_flaws(void **state) {
 
 /* The weakest of the body: mean and CV (0.140 at m = 8.5) of (E/kV)^(1/m). 3000 seeds: the CV's standard error is about
  * 1.5 % of it (its distribution is skew), the mean's 0.14/sqrt(3000) = 0.26 %; four of each. V is the solid volume. */
-static void the_weakest_scatters_by_the_law(void **state) {
-  (void)state;
+TEST(the_weakest_scatters_by_the_law) {
   const struct sph_body body = sphere(8);
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
@@ -223,8 +218,7 @@ static void the_weakest_scatters_by_the_law(void **state) {
 }
 
 /* Ends have no flaws; the middle has its own, as dense as without ends: the strengths of those places are unchanged. */
-static void ends_have_none(void **state) {
-  (void)state;
+TEST(ends_have_none) {
   const struct sph_body rod = {.shape = {.kind = SPH_SHAPE_CYLINDER, .radius = 0.01, .length = 0.04, .axis = {0, 0, 1}},
                                .lattice = {.particles = 1500},
                                .density = 2700,
@@ -272,8 +266,7 @@ static void ends_have_none(void **state) {
  * V_i eps_min^m is a unit exponential for each particle, whether its flaw was drawn or given to it. Means over classes
  * of size, against 1 within 4 standard errors 1/sqrt(n); nearest-particle cells differ from V_i by some per cent (5 %
  * room). */
-static void graded_particles_have_their_weakest(void **state) {
-  (void)state;
+TEST(graded_particles_have_their_weakest) {
   const struct sph_body body =
       {.shape = {.kind = SPH_SHAPE_BOX, .side = {0.2, 0.2, 0.2}},
        .lattice = {.particles = NAN, .grading = {.fine = 2e-3, .point = {0, 0, 0.1}, .radius = 8e-3, .growth = 0.12}},
@@ -310,8 +303,7 @@ static void graded_particles_have_their_weakest(void **state) {
   sph_particles_free(p);
 }
 
-static void extremes_of_the_law(void **state) {
-  (void)state;
+TEST(extremes_of_the_law) {
   const struct sph_body body = sphere(60);
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
@@ -344,18 +336,4 @@ static void extremes_of_the_law(void **state) {
   assert_int_equal(flaws->count, 1);
   sph_flaws_free(flaws);
   sph_particles_free(p);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_is_the_nearest),
-      cmocka_unit_test(owners_are_nearest),
-      cmocka_unit_test(a_seed_means_the_same_flaws),
-      cmocka_unit_test(particles_have_ln_n_flaws),
-      cmocka_unit_test(the_weakest_scatters_by_the_law),
-      cmocka_unit_test(ends_have_none),
-      cmocka_unit_test(graded_particles_have_their_weakest),
-      cmocka_unit_test(extremes_of_the_law),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_
   return flaws;
 }
 
-static void ranked_is_the_law(void **state) {
-  (void)state;
+TEST(ranked_is_the_law) {
   struct sph_flaws *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 3, 500);
   for (size_t i = 0; i < 500; i++) {
     assert_true(flaws->first[i + 1] > flaws->first[i]); /* each particle has one */
@@ -37,8 +36,7 @@ static void ranked_is_the_law(void **state) {
 }
 
 /* Coupon collector: N (ln N + 0.5772) flaws on average, s.d. N pi/sqrt 6; 20 seeds, 5 standard errors. */
-static void count_of_flaws(void **state) {
-  (void)state;
+TEST(count_of_flaws) {
   const size_t n = 400;
   const int seeds = 20;
   double sum = 0;
@@ -53,8 +51,7 @@ static void count_of_flaws(void **state) {
 
 /* Weakest of a Poisson draw is (E/kV)^(1/m), E a unit exponential: CV from gamma functions, 0.140 at m = 8.5, 0.077 at
  * 16, 0.363 at 3. 4000 seeds give the CV to about 1.5 %; 6 % is four times that. `ranked` has none at all. */
-static void scatter_of_the_weakest(void **state) {
-  (void)state;
+TEST(scatter_of_the_weakest) {
   const double ms[] = {8.5, 16, 3};
   const int seeds = 4000;
   for (int c = 0; c < 3; c++) {
@@ -79,8 +76,7 @@ static void scatter_of_the_weakest(void **state) {
 
 /* Every m from 1 to 200 and k from 1 to 1e200 that a user may type: ln eps_j = (ln j - ln k - ln V)/m to rounding,
  * against long double. */
-static void extremes_keep_the_law(void **state) {
-  (void)state;
+TEST(extremes_keep_the_law) {
   const double ms[] = {1, 3, 8.5, 57, 200}, ks[] = {1, 1e10, 1e34, 1e65, 1e200};
   for (int i = 0; i < 5; i++)
     for (int j = 0; j < 5; j++) {
@@ -102,8 +98,7 @@ static void extremes_keep_the_law(void **state) {
  * that mean and variance (poisson); and which particle a flaw goes to is uniform. 2000 seeds: a mean of M is known to
  * sqrt(M/2000), a variance to M sqrt(2/2000) and a bit for the Poisson's own kurtosis; five standard errors. The body
  * is large enough (N = 300, hence about 1900 flaws) that the draw never ends below the tested eps. */
-static void draws_obey_the_law(void **state) {
-  (void)state;
+TEST(draws_obey_the_law) {
   enum { SEEDS = 2000, N = 300 };
   const double m = 8.5, k = 1e30, want[] = {1, 7, 60, 400};
   double chi2 = 0;
@@ -147,8 +142,7 @@ static void draws_obey_the_law(void **state) {
 /* Flaws per particle: one body of N = 20 000 particles holds about N (ln N + 0.577) flaws, spread at random over
  * particles but for the last that ends the draw: mean lambda and variance lambda up to 5 s.e. (of the variance: lambda
  * sqrt(2/N)), lowest 1 by construction. */
-static void counts_per_particle(void **state) {
-  (void)state;
+TEST(counts_per_particle) {
   const size_t n = 20000;
   struct sph_flaws *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 5, n);
   double lambda = (double)flaws->count / (double)n, variance = 0;
@@ -168,8 +162,7 @@ static size_t only_first(void *context, uint64_t flaw) {
   return flaw % 2 ? SPH_FLAWS_NOBODY : 0;
 }
 
-static void owner_that_starves_a_particle_is_refused(void **state) {
-  (void)state;
+TEST(owner_that_starves_a_particle_is_refused) {
   struct sph_flaw_law law = {.weibull = {9, 1e30}, .volume = 1, .draw = SPH_FLAWS_RANKED, .seed = 1};
   struct sph_flaws *flaws = NULL;
   struct error error = {0};
@@ -177,17 +170,4 @@ static void owner_that_starves_a_particle_is_refused(void **state) {
   assert_null(flaws);
   assert_string_equal(error.message,
                       "1 of 2 particles got no flaw within 100 flaws: their sizes differ too much for one flaw each");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ranked_is_the_law),
-      cmocka_unit_test(count_of_flaws),
-      cmocka_unit_test(scatter_of_the_weakest),
-      cmocka_unit_test(extremes_keep_the_law),
-      cmocka_unit_test(draws_obey_the_law),
-      cmocka_unit_test(counts_per_particle),
-      cmocka_unit_test(owner_that_starves_a_particle_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,8 +97,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
   free(mass);
 }
 
-static void equals_brute_force(void **state) {
-  (void)state;
+TEST(equals_brute_force) {
   enum { N = 260 };
   struct sph_particles *p = make(N, SPH_WITH_DAMAGE);
   long group[N];
@@ -171,8 +170,7 @@ static void equals_brute_force(void **state) {
 }
 
 /* Positions and states decide, not the numbering: every permutation gives the same partition (masses distinct). */
-static void numbering_does_not_matter(void **state) {
-  (void)state;
+TEST(numbering_does_not_matter) {
   enum { N = 500 };
   struct sph_particles *p = make(N, SPH_WITH_DAMAGE), *q = make(N, SPH_WITH_DAMAGE);
   struct sph_fragments_options o = sph_fragments_default();
@@ -207,8 +205,7 @@ static struct sph_particles *row(void) {
   return p;
 }
 
-static void only_one_layer_joins_and_nearest_decides(void **state) {
-  (void)state;
+TEST(only_one_layer_joins_and_nearest_decides) {
   struct sph_particles *p = row();
   struct sph_fragments_options o = sph_fragments_default();
   struct sph_fragments with = find(p, &o);
@@ -248,8 +245,7 @@ static void only_one_layer_joins_and_nearest_decides(void **state) {
   sph_particles_free(p);
 }
 
-static void static_strength_breaks(void **state) {
-  (void)state;
+TEST(static_strength_breaks) {
   struct sph_particles *p = row();
   const struct sph_fragments_body body = {.static_strength = 17e6};
   struct sph_fragments_options o = sph_fragments_default();
@@ -289,8 +285,7 @@ static void static_strength_breaks(void **state) {
 }
 
 /* Two blocks in contact are two fragments unless across_bodies is set; a body that is left out is never counted. */
-static void bodies_touch_or_are_left_out(void **state) {
-  (void)state;
+TEST(bodies_touch_or_are_left_out) {
   struct sph_particles *p = make(10, 0);
   struct sph_fragments_options o = sph_fragments_default();
   struct sph_fragments_body bodies[2] = {{false, NAN}, {false, NAN}};
@@ -325,8 +320,7 @@ static void near(double a, double b, double scale) {
     fail_msg("%.17g is not %.17g", a, b);
 }
 
-static void turning_pieces(void **state) {
-  (void)state;
+TEST(turning_pieces) {
   enum { N = 400 };
   struct sph_particles *p = make(N, 0);
   struct sph_fragments_options o = sph_fragments_default();
@@ -384,8 +378,7 @@ static void turning_pieces(void **state) {
 }
 
 /* An ellipsoid of axes 3:2:1.5 cut from a fine lattice has these ratios; ejecta carry their energy relative to it. */
-static void shape_and_ejecta(void **state) {
-  (void)state;
+TEST(shape_and_ejecta) {
   size_t n = 0;
   struct sph_particles *p = make(60000, 0);
   for (int a = -30; a <= 30; a++)
@@ -443,8 +436,7 @@ static double axis_of(int n) {
 
 /* A lattice box whose moments are known; fewer than 60 particles and a line have no lengths; a sphere has its diameter.
  */
-static void lengths(void **state) {
-  (void)state;
+TEST(lengths) {
   struct sph_particles *p = make(12 * 7 * 4, 0);
   p->n = 0;
   for (int a = 0; a < 12; a++)
@@ -477,8 +469,7 @@ static void lengths(void **state) {
 
 /* Boxes 12:8:5 of about 74 particles, cut from a lattice in 40 directions: mean ratios within 0.02 of the box's.
  * Lengths between plates gave 0.50 for 0.42. */
-static void ratios_of_coarse_boxes(void **state) {
-  (void)state;
+TEST(ratios_of_coarse_boxes) {
   enum { BOXES = 40 };
   const double side[3] = {12 / 1.85, 8 / 1.85, 5 / 1.85};
   double middle = 0, shortest = 0;
@@ -527,8 +518,7 @@ static void ratios_of_coarse_boxes(void **state) {
     fail_msg("boxes 12:8:5: mean b/a %g and c/a %g", middle, shortest);
 }
 
-static void periodic_box(void **state) {
-  (void)state;
+TEST(periodic_box) {
   /* a rod across the boundary x = 0 that turns about z, and a bar that spans the box along y */
   struct sph_particles *p = make(24, 0);
   struct sph_fragments_options o = sph_fragments_default();
@@ -556,8 +546,7 @@ static void periodic_box(void **state) {
 }
 
 /* A grid over the extent would need more than 1e27 cells; a particle that is not finite has no neighbours. */
-static void far_flung_and_not_finite(void **state) {
-  (void)state;
+TEST(far_flung_and_not_finite) {
   struct sph_particles *p = row();
   struct sph_fragments_options o = sph_fragments_default();
   p->x[8] = 1e9;
@@ -575,8 +564,7 @@ static void far_flung_and_not_finite(void **state) {
   sph_particles_free(p);
 }
 
-static void nothing_all_dust_all_one(void **state) {
-  (void)state;
+TEST(nothing_all_dust_all_one) {
   struct sph_particles *p = make(0, 0);
   struct sph_fragments_options o = sph_fragments_default();
   struct sph_fragments f = find(p, &o);
@@ -603,8 +591,7 @@ static void nothing_all_dust_all_one(void **state) {
 }
 
 /* With the initial smoothing lengths, expanding matter is not linked over larger distances. */
-static void h_may_be_the_initial_one(void **state) {
-  (void)state;
+TEST(h_may_be_the_initial_one) {
   struct sph_particles *p = row();
   double h[9];
   struct sph_fragments_options o = sph_fragments_default();
@@ -620,23 +607,4 @@ static void h_may_be_the_initial_one(void **state) {
   assert_int_equal(f.count, 3);
   sph_fragments_clear(&f);
   sph_particles_free(p);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(equals_brute_force),
-      cmocka_unit_test(numbering_does_not_matter),
-      cmocka_unit_test(only_one_layer_joins_and_nearest_decides),
-      cmocka_unit_test(static_strength_breaks),
-      cmocka_unit_test(bodies_touch_or_are_left_out),
-      cmocka_unit_test(turning_pieces),
-      cmocka_unit_test(shape_and_ejecta),
-      cmocka_unit_test(lengths),
-      cmocka_unit_test(ratios_of_coarse_boxes),
-      cmocka_unit_test(periodic_box),
-      cmocka_unit_test(far_flung_and_not_finite),
-      cmocka_unit_test(nothing_all_dust_all_one),
-      cmocka_unit_test(h_may_be_the_initial_one),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

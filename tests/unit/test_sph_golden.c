@@ -1,4 +1,5 @@
 /* Pinned hashes of three small runs of engine sph: tests/support/golden.h says what to do when they change. */
+#define CHECK_OWN_MAIN
 #include "tests/support/golden.h"
 
 enum { RESULTS_VERSION = 12 };
@@ -12,8 +13,7 @@ static int changed(const char *name, const struct sph_inputs *inputs, const char
   return golden_changed(&sph_engine, name, ran, own, sizeof own / sizeof *own, pinned);
 }
 
-static void bits_change_only_with_the_version(void **state) {
-  (void)state;
+TEST(bits_change_only_with_the_version) {
   golden_version(&sph_engine, RESULTS_VERSION);
   struct sph_inputs sphere = SPH_CASE("basalt-sphere", "fidelity.particles=500", "fidelity.projectile_spacing=0.7",
                                       "stop.end_time=30 us", "fracture.draw=poisson");
@@ -30,6 +30,5 @@ int main(int count, char **arguments) {
   (void)count;
   if (!golden_start(arguments))
     return 71;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(bits_change_only_with_the_version)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return check_run(NULL, NULL);
 }

@@ -7,8 +7,7 @@
 
 enum { SIDE = 12, COUNT = SIDE * SIDE * SIDE, GRID = 16, CELLS = GRID * GRID * GRID };
 
-static void a_permutation_that_keeps_neighbours_near(void **state) {
-  (void)state;
+TEST(a_permutation_that_keeps_neighbours_near) {
   static double x[3][COUNT];
   static uint32_t order[COUNT];
   char seen[COUNT] = {0};
@@ -35,8 +34,7 @@ static void a_permutation_that_keeps_neighbours_near(void **state) {
 }
 
 /* Hilbert's curve goes from each cell of a grid to one that shares a face with it. */
-static void from_cell_to_cell_by_faces(void **state) {
-  (void)state;
+TEST(from_cell_to_cell_by_faces) {
   static double x[3][CELLS];
   static uint32_t order[CELLS];
   struct error error = {0};
@@ -52,8 +50,7 @@ static void from_cell_to_cell_by_faces(void **state) {
 }
 
 /* The order depends only on places and numbers. */
-static void ties_stand_by_number(void **state) {
-  (void)state;
+TEST(ties_stand_by_number) {
   static double x[3][COUNT];
   static uint32_t order[COUNT];
   struct error error = {0};
@@ -63,13 +60,4 @@ static void ties_stand_by_number(void **state) {
   for (uint32_t k = 1; k < COUNT; k++)
     assert_true(k == COUNT / 2 ? order[k] % 2 != order[k - 1] % 2 : order[k] == order[k - 1] + 2);
   assert_int_equal(sph_hilbert_find(0, NULL, NULL, NULL, NULL, &error), STATUS_OK);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_permutation_that_keeps_neighbours_near),
-      cmocka_unit_test(from_cell_to_cell_by_faces),
-      cmocka_unit_test(ties_stand_by_number),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

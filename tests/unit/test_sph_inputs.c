@@ -59,8 +59,7 @@ static void accepted(const char *text) {
     fail_msg("%s: %s", text, error.message);
 }
 
-static void table_is_whole(void **state) {
-  (void)state;
+TEST(table_is_whole) {
   for (size_t i = 0; i < sph_inputs.count; i++) {
     const struct field *row = &sph_inputs.rows[i];
     assert_non_null(row->doc);
@@ -86,8 +85,7 @@ static void table_is_whole(void **state) {
   accepted("kind: impact");
 }
 
-static void every_material_is_sound(void **state) {
-  (void)state;
+TEST(every_material_is_sound) {
   for (size_t i = 0; i < 10 || sph_materials_name(i); i++) { /* there are ten or more */
     struct sph_material m;
     struct error error = {0};
@@ -125,8 +123,7 @@ static void every_material_is_sound(void **state) {
   assert_non_null(strstr(error.message, "tillotson.A"));
 }
 
-static void a_name_gives_the_values(void **state) {
-  (void)state;
+TEST(a_name_gives_the_values) {
   struct sph_inputs in = good("kind: impact"), ice;
   assert_string_equal(in.target.material_name, "basalt");
   assert_string_equal(in.projectile.material_name, "nylon");
@@ -160,8 +157,7 @@ static void a_name_gives_the_values(void **state) {
 }
 
 /* Another material in place of a document's own one: none of its values stays, but those that overrides gave. */
-static void another_material_drops_those_of_the_document(void **state) {
-  (void)state;
+TEST(another_material_drops_those_of_the_document) {
   static const char *const rows[] = {"target.material.density", "target.material.shear_modulus", "target.radius"};
   struct scene *scene;
   struct error error = {0};
@@ -184,8 +180,7 @@ static void another_material_drops_those_of_the_document(void **state) {
 }
 
 /* The law of yield under pressure is in the identity only where it is on: a run without it keeps its identity. */
-static void pressure_strength(void **state) {
-  (void)state;
+TEST(pressure_strength) {
   const struct sph_inputs off = good("kind: impact"),
                           named = good("target: {material: {pressure_strength: {law: none}}}"),
                           on = good("target: {material: {pressure_strength: {law: lundborg, broken_friction: 0}}}");
@@ -207,8 +202,7 @@ static void pressure_strength(void **state) {
   accepted("target: {material: {pressure_strength: {law: lundborg}}}");
 }
 
-static void missing_values_are_named(void **state) {
-  (void)state;
+TEST(missing_values_are_named) {
   refused("target: {material: {name: custom, density: 1000 kg/m^3}}", "target.material.shear_modulus is needed");
   refused("target: {fracture: on, material: {name: aluminium}}",
           "target.material.weibull.m is needed because fracture is on, and the material 'aluminium' has none: give it, "
@@ -230,8 +224,7 @@ static void missing_values_are_named(void **state) {
   assert_non_null(strstr(read_text("impact: {speed: 3 cm}").report, "m/s"));
 }
 
-static void what_cannot_be_run_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_run_is_refused) {
   refused("kind: stretch", "target.shape: cylinder");
   refused("target: {shape: cylinder, radius: 1 cm, inner_radius: 2 cm}", "smaller hole");
   refused("target: {shape: cylinder, radius: 2 cm, inner_radius: 1 cm}", "misses");
@@ -277,8 +270,7 @@ static void what_cannot_be_run_is_refused(void **state) {
     }
 }
 
-static void sizes_follow(void **state) {
-  (void)state;
+TEST(sizes_follow) {
   struct sph_inputs in = good("impact: {projectile: mass, mass: 0.2 g}");
   assert_true(fabs(sph_derived_projectile_mass(&in) / 2e-4 - 1) < 1e-12);
   in = good("impact: {projectile: specific-energy, specific_energy: 3 kJ/kg, speed: 3.2 km/s}");
@@ -297,8 +289,7 @@ static void sizes_follow(void **state) {
 }
 
 /* Pores: by distention or by fraction, as the material gives them or as the scene does; 1 is the solid. */
-static void pores(void **state) {
-  (void)state;
+TEST(pores) {
   struct sph_inputs in = good("target: {material: {name: porous-ice}}");
   assert_true(in.target.material.palpha.distention == 1.5 && sph_material_solid_ratio(&in.target.material) == 1.5);
   assert_true(fabs(in.target.material.palpha.fraction - 1.0 / 3) < 1e-15);
@@ -351,17 +342,4 @@ static void pores(void **state) {
   char *identity = field_identity(&sph_inputs, &in);
   assert_null(strstr(identity, "target.material.porosity.distention"));
   free(identity);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(table_is_whole),
-                                     cmocka_unit_test(every_material_is_sound),
-                                     cmocka_unit_test(a_name_gives_the_values),
-                                     cmocka_unit_test(another_material_drops_those_of_the_document),
-                                     cmocka_unit_test(pressure_strength),
-                                     cmocka_unit_test(missing_values_are_named),
-                                     cmocka_unit_test(what_cannot_be_run_is_refused),
-                                     cmocka_unit_test(sizes_follow),
-                                     cmocka_unit_test(pores)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,8 +85,7 @@ static double depth_of(const struct sph_shape *shape, const struct sph_points *p
 }
 
 /* Cut by a surface: within 0.2 % (the search's own limit), exact where 0.2 % is less than one particle. */
-static void numbers_come_out(void **state) {
-  (void)state;
+TEST(numbers_come_out) {
   const double wanted[] = {1, 2, 3, 5, 13, 57, 100, 500, 2000, 10000, 95000};
   for (int kind = 0; kind < 2; kind++)
     for (int turned = 0; turned < 2; turned++)
@@ -122,8 +121,7 @@ static void numbers_come_out(void **state) {
 }
 
 /* Inside: 12 neighbours at 2^(1/6) spacings and 6 at 1, 56 within 2h for both, and the same density sum at each. */
-static void neighbours_of_regular_lattices(void **state) {
-  (void)state;
+TEST(neighbours_of_regular_lattices) {
   for (int kind = 0; kind < 2; kind++)
     for (int turned = 0; turned < 2; turned++) {
       struct sph_points p = fill(&sphere,
@@ -157,8 +155,7 @@ static void neighbours_of_regular_lattices(void **state) {
 /* Centre of mass exactly; moments of inertia tend to the sphere's 2/5 M R^2 and the cylinder's, products to 0. The
  * surface's roughness is what differs, about n^(-2/3): 1 % at 1000 (twice that is allowed), 0.1 % at 50 000 (three
  * times). */
-static void moments_tend_to_the_shape(void **state) {
-  (void)state;
+TEST(moments_tend_to_the_shape) {
   const double numbers[] = {1000, 50000}, room[] = {0.02, 0.003};
   for (int k = 0; k < 2; k++)
     for (int kind = 0; kind < 3; kind++)
@@ -191,8 +188,7 @@ static void moments_tend_to_the_shape(void **state) {
 }
 
 /* A cylinder's ends are half a layer away, all layers equally far apart. */
-static void cylinders_have_whole_layers(void **state) {
-  (void)state;
+TEST(cylinders_have_whole_layers) {
   struct sph_points p = fill(&rod, (struct sph_lattice){.particles = 5000});
   double first = HUGE_VAL, last = -HUGE_VAL, second = HUGE_VAL;
   for (int pass = 0; pass < 2; pass++)
@@ -209,8 +205,7 @@ static void cylinders_have_whole_layers(void **state) {
 }
 
 /* With its images, a periodic body has the same sum everywhere: no seam. */
-static void periodic_bodies_have_no_seam(void **state) {
-  (void)state;
+TEST(periodic_bodies_have_no_seam) {
   for (int kind = 0; kind < 2; kind++) {
     struct sph_points p = fill(&brick,
                                (struct sph_lattice){.kind = kind, .particles = 3000, .periodic = {true, true, true}});
@@ -283,8 +278,7 @@ static double sum_scatter(const struct sph_shape *shape, const struct sph_points
 }
 
 /* Random points scatter by some 6 %; after relaxation at most by 1 to 2 %, about the right density. */
-static void irregular_points_are_even(void **state) {
-  (void)state;
+TEST(irregular_points_are_even) {
   double mean;
   const struct sph_shape *const shapes[] = {&sphere, &rod, &cube};
   for (int s = 0; s < 3; s++) {
@@ -335,8 +329,7 @@ static double coarsest_of(const struct sph_shape *shape, struct sph_grading grad
 }
 
 /* The finest zone keeps the bound on the coarsest spacing. It meets that bound, or a finer zone cannot be made. */
-static void finest_zone_keeps_the_coarsest_spacing(void **state) {
-  (void)state;
+TEST(finest_zone_keeps_the_coarsest_spacing) {
   const struct sph_shape shapes[] = {{.kind = SPH_SHAPE_SPHERE, .radius = 0.03},
                                      {.kind = SPH_SHAPE_BOX, .side = {0.06, 0.06, 0.06}}};
   const double numbers[] = {400, 1500, 6000}, bounds[] = {1.3, 2, 2.5};
@@ -371,8 +364,7 @@ static void finest_zone_keeps_the_coarsest_spacing(void **state) {
 
 /* 0.5 mm at the impact, growing outwards: the requested number, volumes that add up, the requested spacing, and a
  * density sum that is right in every shell. */
-static void graded_points_keep_their_grading(void **state) {
-  (void)state;
+TEST(graded_points_keep_their_grading) {
   const struct sph_shape target = {.kind = SPH_SHAPE_BOX, .side = {0.2, 0.2, 0.2}};
   const struct sph_grading grading = {.fine = 8e-4, .point = {0, 0, 0.1}, .radius = 4e-3, .growth = NAN};
   struct sph_points p = fill(&target, (struct sph_lattice){.particles = 20000, .seed = 3, .grading = grading});
@@ -434,8 +426,7 @@ static void graded_points_keep_their_grading(void **state) {
                    STATUS_MEMORY);
 }
 
-static void absurd_lattices_are_refused(void **state) {
-  (void)state;
+TEST(absurd_lattices_are_refused) {
   const struct {
     struct sph_lattice lattice;
     const struct sph_shape *shape;
@@ -459,8 +450,7 @@ static void absurd_lattices_are_refused(void **state) {
 
 /* Threads, sheets and discs, thinner than a million to one: as requested, or refused; quickly, and never an empty body.
  */
-static void thin_bodies_are_filled_or_refused(void **state) {
-  (void)state;
+TEST(thin_bodies_are_filled_or_refused) {
   for (double thin = 1; thin > 1e-9; thin *= 0.02) {
     const struct sph_shape shapes[] = {
         {.kind = SPH_SHAPE_CYLINDER, .radius = thin, .length = 1, .axis = {1, 2, 3}},
@@ -494,20 +484,4 @@ static void thin_bodies_are_filled_or_refused(void **state) {
   struct sph_points p = fill(&thread, (struct sph_lattice){.particles = 20000, .turned = true, .seed = 7});
   assert_true(fabs((double)p.n / 20000 - 1) < 0.01);
   sph_lattice_empty(&p);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_come_out),
-      cmocka_unit_test(neighbours_of_regular_lattices),
-      cmocka_unit_test(moments_tend_to_the_shape),
-      cmocka_unit_test(cylinders_have_whole_layers),
-      cmocka_unit_test(periodic_bodies_have_no_seam),
-      cmocka_unit_test(irregular_points_are_even),
-      cmocka_unit_test(graded_points_keep_their_grading),
-      cmocka_unit_test(finest_zone_keeps_the_coarsest_spacing),
-      cmocka_unit_test(absurd_lattices_are_refused),
-      cmocka_unit_test(thin_bodies_are_filled_or_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,7 +77,7 @@ static double check(const struct cloud *c, const double periodic[3], const struc
   return 1 - (double)filled / lanes;
 }
 
-static void every_pair_is_met_once_and_batches_are_whole(void **state) {
+TEST(every_pair_is_met_once_and_batches_are_whole) {
   static const char *const classes[] = {"baseline", "v3", "v4"};
   (void)state;
   for (int variant = 0; variant < 48; variant++) {
@@ -102,9 +102,4 @@ static void every_pair_is_met_once_and_batches_are_whole(void **state) {
     free(c);
   }
   unsetenv("CLAST_CPU");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_pair_is_met_once_and_batches_are_whole)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

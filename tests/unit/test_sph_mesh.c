@@ -1,5 +1,6 @@
 /* Bodies from shape files. A box as a mesh must equal a box: the same particles to rounding, distances, gaps and places
  * of impact. In bodies that only a mesh can describe, flaws are uniform, and a projectile starts outside of them. */
+#define CHECK_OWN_MAIN
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,8 +55,7 @@ static void draw(uint64_t item, double scale, double p[3]) {
     p[k] = scale * (2 * random_uniform(bits[k]) - 1);
 }
 
-static void same_as_a_box(void **state) {
-  (void)state;
+TEST(same_as_a_box) {
   near(sph_shape_volume(&as_mesh), sph_shape_volume(&box), 1e-20);
   near(sph_shape_thinnest(&as_mesh), sph_shape_thinnest(&box), 1e-15);
   near(sph_shape_thinnest(&box), fmin(box.side[0], fmin(box.side[1], box.side[2])), 0);
@@ -81,8 +81,7 @@ static void same_as_a_box(void **state) {
 
 enum { DRAWS = SANITIZED ? 40 : 200 };
 
-static void same_gaps_as_a_box(void **state) {
-  (void)state;
+TEST(same_gaps_as_a_box) {
   struct sph_shape others[] = {
       {.kind = SPH_SHAPE_SPHERE, .radius = 0.006},
       {.kind = SPH_SHAPE_CYLINDER, .radius = 0.004, .length = 0.01, .axis = {1, 2, 3}},
@@ -113,8 +112,7 @@ static void same_gaps_as_a_box(void **state) {
   assert_true(sph_shape_gap(&as_mesh, &inside) < 0);
 }
 
-static void same_particles_as_a_box(void **state) {
-  (void)state;
+TEST(same_particles_as_a_box) {
   for (uint64_t seed = 1; seed <= 6; seed++) {
     struct sph_points of_box, of_mesh;
     struct error error;
@@ -137,8 +135,7 @@ static void same_particles_as_a_box(void **state) {
 }
 
 /* Lattices, irregular and graded points of the L: all are inside, their mass is exact, and each third has its share. */
-static void an_l_is_filled(void **state) {
-  (void)state;
+TEST(an_l_is_filled) {
   for (int kind = 0; kind < 4; kind++) {
     struct sph_body body = {.shape = l_shape, .density = 2700, .h_over_spacing = NAN};
     body.lattice = (struct sph_lattice){.kind = kind < 3 ? kind : SPH_LATTICE_IRREGULAR,
@@ -173,8 +170,7 @@ static void an_l_is_filled(void **state) {
 }
 
 /* Flaws are uniform: each third of the L has its share, within 4 standard deviations. */
-static void flaws_are_uniform(void **state) {
-  (void)state;
+TEST(flaws_are_uniform) {
   enum { N = 30000 };
   int third[3] = {0};
   for (uint64_t flaw = 0; flaw < N; flaw++) {
@@ -189,8 +185,7 @@ static void flaws_are_uniform(void **state) {
 
 /* The projectile touches the plane of the face that is hit, at 60 degrees, and parts of the body above that plane must
  * not overlap it. */
-static void projectile_starts_clear(void **state) {
-  (void)state;
+TEST(projectile_starts_clear) {
   char text[512];
   struct scene *scene;
   struct error error;
@@ -213,8 +208,7 @@ static void projectile_starts_clear(void **state) {
 }
 
 /* A scene without its file, or with the hash of a file that was not read, is refused with a remedy. */
-static void file_is_needed(void **state) {
-  (void)state;
+TEST(file_is_needed) {
   FILE *file = fopen("box.obj", "w");
   assert_true(file && fputs(box_file, file) >= 0 && fclose(file) == 0);
   static const char *const parts[][2] = {
@@ -244,10 +238,5 @@ static void file_is_needed(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_a_box),  cmocka_unit_test(same_gaps_as_a_box), cmocka_unit_test(same_particles_as_a_box),
-      cmocka_unit_test(an_l_is_filled), cmocka_unit_test(flaws_are_uniform),  cmocka_unit_test(projectile_starts_clear),
-      cmocka_unit_test(file_is_needed),
-  };
-  return cmocka_run_group_tests(tests, set_up, NULL);
+  return check_run(set_up, NULL);
 }

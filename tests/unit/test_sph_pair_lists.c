@@ -20,8 +20,7 @@ static void swap_particles(struct cloud *c, size_t i, size_t j) {
 
 /* Bounded by n and by pairs, whatever the extent: the cloud, and the same with every third particle spread over 1e12 m.
  */
-static void memory_does_not_grow_with_the_extent(void **state) {
-  (void)state;
+TEST(memory_does_not_grow_with_the_extent) {
   struct cloud *c = cloud_make(SIDE, 1, false, 12);
   size_t bytes[2];
   for (int flung = 0; flung < 2; flung++) {
@@ -44,8 +43,7 @@ static void memory_does_not_grow_with_the_extent(void **state) {
 /* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into
  * chunks of any size, sorted in space or not at all, reaches 10:1, and with particles that are far off, not finite,
  * without reach or coincident. */
-static void lists_equal_brute_force(void **state) {
-  (void)state;
+TEST(lists_equal_brute_force) {
   static const size_t chunks[] = {4096, 256, 100};
   for (int variant = 0; variant < 24; variant++) {
     const bool periodic = variant & 1, shuffled = variant & 2, odd = variant & 4;
@@ -95,8 +93,7 @@ static void lists_equal_brute_force(void **state) {
 
 /* A list for several particles contains the neighbours of all of them: sorted in space or not, with members far apart.
  */
-static void shared_lists_join_those_of_their_members(void **state) {
-  (void)state;
+TEST(shared_lists_join_those_of_their_members) {
   enum { CHUNK = 240 };
   for (int variant = 0; variant < 8; variant++) {
     const size_t share = variant & 1 ? 4 : 2;
@@ -151,8 +148,7 @@ static void shared_lists_join_those_of_their_members(void **state) {
   }
 }
 
-static void thin_periodic_boxes_are_refused(void **state) {
-  (void)state;
+TEST(thin_periodic_boxes_are_refused) {
   struct cloud *c = cloud_make(4, 1, false, 4);
   struct reference_sph_lists lists;
   struct error error = {0};
@@ -163,8 +159,7 @@ static void thin_periodic_boxes_are_refused(void **state) {
 }
 
 /* Stale exactly when a pair could be missed: each particle may use up its slack by moving or by growing. */
-static void lists_wear_out_with_the_slack(void **state) {
-  (void)state;
+TEST(lists_wear_out_with_the_slack) {
   struct cloud *c = cloud_make(6, 1, false, 5);
   struct sph_pairs *pairs;
   struct error error = {0};
@@ -184,8 +179,7 @@ static void lists_wear_out_with_the_slack(void **state) {
 }
 
 /* Entries of shared lists have bits for the neighbour's number, and bits for the members it belongs to. */
-static void float_takes_so_many_particles(void **state) {
-  (void)state;
+TEST(float_takes_so_many_particles) {
   struct sph_pair_options options = usual;
   struct sph_pairs *pairs;
   struct error error = {0};
@@ -193,16 +187,4 @@ static void float_takes_so_many_particles(void **state) {
   assert_int_equal(sph_pairs_create((size_t)1 << 28, &options, &pairs, &error), STATUS_CONTENT);
   assert_null(pairs);
   assert_non_null(strstr(error.message, "268435455"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(memory_does_not_grow_with_the_extent),
-      cmocka_unit_test(lists_equal_brute_force),
-      cmocka_unit_test(shared_lists_join_those_of_their_members),
-      cmocka_unit_test(thin_periodic_boxes_are_refused),
-      cmocka_unit_test(lists_wear_out_with_the_slack),
-      cmocka_unit_test(float_takes_so_many_particles),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -123,8 +123,7 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
 /* All variants without the correction, in every class this machine has, to rounding: sums of 60 terms of either sign in
  * another order, and approximations within 2 ulp, stay within 1e-13 of the largest. Float: 60 terms of relative error
  * 2^-24 and positions in units of h/2^20 give some 1e-5. */
-static void kernels_equal_plain_c(void **state) {
-  (void)state;
+TEST(kernels_equal_plain_c) {
   static const double scales[] = {1, 1e-7, 1e6};
   for (int variant = 0; variant < 16; variant++) {
     const double spacing = scales[variant % 3], length = 18 * spacing;
@@ -156,8 +155,7 @@ static void kernels_equal_plain_c(void **state) {
   unsetenv("CLAST_CPU");
 }
 
-static void momentum_is_conserved(void **state) {
-  (void)state;
+TEST(momentum_is_conserved) {
   struct cloud *c = cloud_make(SIDE, 1, true, 1);
   struct summed *s = sum(c, &usual);
   double total[3] = {0}, scale = 0;
@@ -173,8 +171,7 @@ static void momentum_is_conserved(void **state) {
 
 /* The gradient is the conjugate of the forces, with volumes and with the correction too: sum m v.a + sum m sigma/rho :
  * grad v = -heat, viscous and of the artificial stress. In every CPU class. */
-static void work_equals_strain_energy(void **state) {
-  (void)state;
+TEST(work_equals_strain_energy) {
   for (int variant = SANITIZED ? 32 : 0; variant < 3 * 16; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 16], 1), 0);
     struct cloud *c = cloud_make(SIDE, 1, true, 2);
@@ -211,8 +208,7 @@ static void work_equals_strain_energy(void **state) {
 }
 
 /* A linear velocity field comes back exactly with the correction, corners and edges included, in every CPU class. */
-static void corrected_gradient_is_linear(void **state) {
-  (void)state;
+TEST(corrected_gradient_is_linear) {
   static const double g[9] = {0.3, -1, 0.2, 1, 0.1, 0.5, -0.2, 0.7, -0.4};
   for (int variant = SANITIZED ? 16 : 0; variant < 3 * 8; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
@@ -236,8 +232,7 @@ static void corrected_gradient_is_linear(void **state) {
 
 /* Each pair once, however lists are cut into chunks: equal masses, no stress and unit volume weights, so that each
  * particle's sum is the number of others within the mean of both supports. */
-static void each_pair_is_summed_once(void **state) {
-  (void)state;
+TEST(each_pair_is_summed_once) {
   struct cloud *c = cloud_make(SIDE, 1, true, 9);
   size_t pairs = 0;
   for (size_t i = 0; i < c->n; i++)
@@ -259,8 +254,7 @@ static void each_pair_is_summed_once(void **state) {
 
 /* Without deviators forces are along the line between two particles: sum m x cross a = 0. Viscosity included. With the
  * correction also with deviators, whatever the stress. */
-static void angular_momentum_is_conserved(void **state) {
-  (void)state;
+TEST(angular_momentum_is_conserved) {
   for (int corrected = 0; corrected < 2; corrected++) {
     struct cloud *c = cloud_make(SIDE, 1, !corrected, 10);
     struct sph_pair_options options = usual;
@@ -293,8 +287,7 @@ static void cloud_break(struct cloud *c) {
 
 /* With surfaces at cracks, with reconstructed velocities, with both: energy and both momenta, also of particles with so
  * few neighbours that their gradient is not, or not wholly, corrected. In every CPU class. */
-static void surfaces_keep_energy_and_momenta(void **state) {
-  (void)state;
+TEST(surfaces_keep_energy_and_momenta) {
   for (int variant = SANITIZED ? 16 : 0; variant < 3 * 8; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
     struct cloud *c = cloud_make(SIDE, 1, false, 5);
@@ -331,8 +324,7 @@ static void surfaces_keep_energy_and_momenta(void **state) {
 
 /* A whole particle does not see how loose ones fly: its gradient is that of the whole ones, whose field is linear. Nor
  * does its stress act on them: loose particles without stress have no force from it. Pressed ones it sees. */
-static void loose_neighbours_are_not_felt(void **state) {
-  (void)state;
+TEST(loose_neighbours_are_not_felt) {
   static const double g[9] = {0.3, -1, 0.2, 1, 0.1, 0.5, -0.2, 0.7, -0.4};
   for (int variant = 0; variant < 3 * 4; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 4], 1), 0);
@@ -370,8 +362,7 @@ static void loose_neighbours_are_not_felt(void **state) {
 
 /* Without a body around a particle there is no correction, because its inverse would be noise: in a layer, and in
  * debris of five. A corner of a body is corrected in full. */
-static void debris_is_not_corrected(void **state) {
-  (void)state;
+TEST(debris_is_not_corrected) {
   struct sph_pair_options options = usual;
   options.gradient_correction.on = true;
   for (int layer = 0; layer < 2; layer++) {
@@ -400,8 +391,7 @@ static void debris_is_not_corrected(void **state) {
 /* A body under one stress throughout feels forces at its surface only, and over a cut through it they add up to that
  * stress times the area, to its edge: sum of the forces that one half exerts on the other. Uncorrected they miss some
  * 0.2 h along the rim. */
-static void one_stress_over_a_cut(void **state) {
-  (void)state;
+TEST(one_stress_over_a_cut) {
   enum { ACROSS = 12 };
   const double density = 2, spacing = 1, sigma[6] = {3, 0.5, -0.25, 1, 0.75, 2}, mean = (3 + 1 + 2) / 3.0;
   double off[2];
@@ -437,8 +427,7 @@ static void one_stress_over_a_cut(void **state) {
 
 /* Particles that fly apart uniformly feel no viscosity, those that approach do, and it slows them: the sign of eq. 4's
  * missing term. Two particles, by hand: r = h, v.r < 0. */
-static void viscosity_of_two_by_hand(void **state) {
-  (void)state;
+TEST(viscosity_of_two_by_hand) {
   struct cloud *c = cloud_make(2, 1, false, 11);
   c->n = 2;
   for (int i = 0; i < 2; i++) {
@@ -465,8 +454,7 @@ static void viscosity_of_two_by_hand(void **state) {
 }
 
 /* What is not finite neither crashes nor hangs a search or a sum, and lists are stale at once. */
-static void not_finite_does_no_harm(void **state) {
-  (void)state;
+TEST(not_finite_does_no_harm) {
   struct cloud *c = cloud_make(10, 1, true, 13);
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
   struct sph_pairs *pairs;
@@ -494,8 +482,7 @@ static void not_finite_does_no_harm(void **state) {
 }
 
 /* Sums restore the caller's floating-point mode: subnormal numbers are not flushed there. */
-static void tiny_numbers_stay_the_callers(void **state) {
-  (void)state;
+TEST(tiny_numbers_stay_the_callers) {
   struct cloud *c = cloud_make(4, 1, false, 14);
   volatile double least = 0x1p-1022;
   free(sum(c, &usual));
@@ -503,8 +490,7 @@ static void tiny_numbers_stay_the_callers(void **state) {
   free(c);
 }
 
-static void coincident_particles_do_no_harm(void **state) {
-  (void)state;
+TEST(coincident_particles_do_no_harm) {
   struct cloud *c = cloud_make(10, 1, false, 6);
   for (int k = 0; k < 3; k++)
     c->a[k][11] = c->a[k][10];
@@ -535,8 +521,7 @@ static void check_float(struct cloud *c) {
 
 /* The same scene 1000 km from the origin: double keeps the precision of its positions, float loses no more than that.
  */
-static void float_is_as_good_far_away(void **state) {
-  (void)state;
+TEST(float_is_as_good_far_away) {
   struct cloud *c = cloud_make(12, 1, false, 7);
   for (size_t i = 0; i < c->n; i++)
     c->a[1][i] += 1e6;
@@ -545,8 +530,7 @@ static void float_is_as_good_far_away(void **state) {
 
 /* Particles some thousand times larger than the smallest: a pair's distance still fits the integers of float records.
  */
-static void float_holds_sizes_far_apart(void **state) {
-  (void)state;
+TEST(float_holds_sizes_far_apart) {
   for (double ratio = 10; ratio < 1e5; ratio *= 5) {
     struct cloud *c = cloud_make(8, 1, false, 9);
     const size_t tiny = c->n / 2 + 4; /* one, inside */
@@ -557,8 +541,7 @@ static void float_holds_sizes_far_apart(void **state) {
 }
 
 /* So many chunks that some are unpacked while others are summed; with the correction and artificial stress on, too. */
-static void bits_do_not_depend_on_threads(void **state) {
-  (void)state;
+TEST(bits_do_not_depend_on_threads) {
   struct cloud *c = cloud_make(LARGE, 1, true, 8);
   for (int variant = 0; variant < 3; variant++) {
     struct sph_pair_options options = usual;
@@ -626,8 +609,7 @@ static void check_foreign(const struct cloud *c, const struct sph_pair_options *
 
 /* Bodies that are told apart have the sums of bodies that are alone, in a group of particles that share a list, too;
  * and their pairs are in the rows. Tolerances as for kernels_equal_plain_c. */
-static void bodies_apart_are_alone(void **state) {
-  (void)state;
+TEST(bodies_apart_are_alone) {
   static const size_t end[] = {0, 1001, 1778}; /* odd, so that two bodies share a list */
   struct cloud *c = cloud_make(15, 1, true, 11);
   uint8_t *body = malloc(c->n);
@@ -659,28 +641,4 @@ static void bodies_apart_are_alone(void **state) {
   }
   free(body);
   free(c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(kernels_equal_plain_c),
-      cmocka_unit_test(momentum_is_conserved),
-      cmocka_unit_test(work_equals_strain_energy),
-      cmocka_unit_test(corrected_gradient_is_linear),
-      cmocka_unit_test(each_pair_is_summed_once),
-      cmocka_unit_test(angular_momentum_is_conserved),
-      cmocka_unit_test(one_stress_over_a_cut),
-      cmocka_unit_test(debris_is_not_corrected),
-      cmocka_unit_test(viscosity_of_two_by_hand),
-      cmocka_unit_test(not_finite_does_no_harm),
-      cmocka_unit_test(tiny_numbers_stay_the_callers),
-      cmocka_unit_test(coincident_particles_do_no_harm),
-      cmocka_unit_test(float_is_as_good_far_away),
-      cmocka_unit_test(float_holds_sizes_far_apart),
-      cmocka_unit_test(bits_do_not_depend_on_threads),
-      cmocka_unit_test(bodies_apart_are_alone),
-      cmocka_unit_test(surfaces_keep_energy_and_momenta),
-      cmocka_unit_test(loose_neighbours_are_not_felt),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

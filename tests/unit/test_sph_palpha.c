@@ -50,8 +50,7 @@ static void near(double got, double want, double tolerance, const char *what) {
 }
 
 /* The known values, to the digits given (sph_palpha.md). */
-static void printed_values(void **state) {
-  (void)state;
+TEST(printed_values) {
   struct sph_palpha_law al = law_of(&porous_aluminium, &aluminium), p = law_of(&pumice, &pumice_matrix);
   near(al.elastic_distention, 1.27388, 5e-6, "alpha_e of porous aluminium");
   near(sph_palpha_crush(&al, 80e6), al.elastic_distention, 1e-12, "start of the curve");
@@ -63,8 +62,7 @@ static void printed_values(void **state) {
 }
 
 /* Slopes against central differences: truncation (1e-5)^2 times curvature over slope (at most n1^2/2 = 72): 1e-8. */
-static void curve_slopes(void **state) {
-  (void)state;
+TEST(curve_slopes) {
   struct sph_palpha_law laws[] = {law_of(&porous_aluminium, &aluminium), law_of(&pumice, &pumice_matrix),
                                   law_of(&porous_ice, &ice)};
   for (int l = 0; l < 3; l++)
@@ -81,8 +79,7 @@ static void curve_slopes(void **state) {
 }
 
 /* The elastic branch against its own differential equation in 20 000 midpoint steps, and back. */
-static void elastic_branch(void **state) {
-  (void)state;
+TEST(elastic_branch) {
   const struct sph_palpha_material *given[] = {&porous_aluminium, &porous_ice};
   const struct sph_material *solid[] = {&aluminium, &ice};
   for (int l = 0; l < 2; l++) {
@@ -112,8 +109,7 @@ static void elastic_branch(void **state) {
 
 /* dP/drho, dP/du, dalpha/drho, dalpha/du and f on each branch: fresh and elastic, crushing, solid above P_s, tension,
  * hot. */
-static void derivatives(void **state) {
-  (void)state;
+TEST(derivatives) {
   const struct sph_palpha_material *given[] = {&porous_aluminium, &pumice, &porous_ice};
   const struct sph_material *solid[] = {&aluminium, &pumice_matrix, &ice};
   int seen[4] = {0};
@@ -187,8 +183,7 @@ static double follow(const struct sph_palpha_law *law, double alpha, double rho0
   return alpha;
 }
 
-static void against_the_rate_form(void **state) {
-  (void)state;
+TEST(against_the_rate_form) {
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
   double rho0 = 2700 / 1.275;
   /* elastic: to 70 MPa or so */
@@ -221,8 +216,7 @@ static void against_the_rate_form(void **state) {
 /* Load, unload, load again to the same density: the same pressure, 312 MPa. A code that takes the crush slope whenever
  * P rises between P_e and P_s crushes the same pores twice, and its pressure is far too low (85 MPa): also computed
  * here. */
-static void load_unload_reload(void **state) {
-  (void)state;
+TEST(load_unload_reload) {
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
   double rho0 = 2700 / 1.275, low = rho0, high = rho0 * 1.3;
   for (int i = 0; i < 60; i++) { /* the density of 312 MPa */
@@ -269,8 +263,7 @@ static void load_unload_reload(void **state) {
     fail_msg("the trap is no trap: %g MPa", wrong / 1e6);
 }
 
-static void jump(void **state) {
-  (void)state;
+TEST(jump) {
   struct sph_palpha_law laws[] = {law_of(&porous_aluminium, &aluminium), law_of(&pumice, &pumice_matrix),
                                   law_of(&porous_ice, &ice)};
   for (int l = 0; l < 3; l++)
@@ -291,8 +284,7 @@ static void jump(void **state) {
 }
 
 /* alpha_0 -> 1: pressure at a given compression tends to the solid's, in proportion to alpha_0 - 1. */
-static void solid_limit(void **state) {
-  (void)state;
+TEST(solid_limit) {
   double last = 0;
   for (int k = 0; k < 3; k++) {
     const double a0[] = {1.01, 1.001, 1.0001};
@@ -321,8 +313,7 @@ static void solid_limit(void **state) {
 
 /* alpha_0 -> 1: closing ever fewer pores causes ever less damage, without a jump; a body of many pores follows the law.
  */
-static void few_pores_do_little_harm(void **state) {
-  (void)state;
+TEST(few_pores_do_little_harm) {
   double last = 1;
   for (double pores = 0.1; pores > 1e-9; pores /= 1.01) {
     struct sph_palpha_material given = porous_aluminium;
@@ -340,8 +331,7 @@ static void few_pores_do_little_harm(void **state) {
 }
 
 /* Heat at constant bulk density raises P, so it crushes; cooling back does not open the pores again. */
-static void heat(void **state) {
-  (void)state;
+TEST(heat) {
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
   double rho = 2700 / 1.275 * 1.05, rest = 1.275, alpha = 1.275, last = 2, pressure = 0;
   for (double u = 0; u < 6e5; u += 5e3) {
@@ -355,8 +345,7 @@ static void heat(void **state) {
 }
 
 /* c_e at alpha_0, the solid's at 1, linear between, the solid's taken at rho_s = alpha rho. */
-static void sound_speeds(void **state) {
-  (void)state;
+TEST(sound_speeds) {
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium), p = law_of(&pumice, &pumice_matrix);
   near(sph_palpha_update(&law, 1.275, 1.275, 2700 / 1.275, 0).sound_speed, 4110, 1e-9, "c at alpha_0");
   near(sph_palpha_update(&law, 1, 1, 2700, 0).sound_speed, sqrt(7.52e10 / 2700), 1e-9, "c of the solid");
@@ -372,8 +361,7 @@ static void sound_speeds(void **state) {
 
 /* While pores close, the wave that acts has the slope of the adiabat, here by a difference of 1e-6; else it is that of
  * sound, also on reloading. */
-static void wave_speeds(void **state) {
-  (void)state;
+TEST(wave_speeds) {
   const struct sph_palpha_law laws[] = {law_of(&porous_aluminium, &aluminium), law_of(&pumice, &pumice_matrix)};
   for (int l = 0; l < 2; l++) {
     const double top = laws[l].given.distention, rho = laws[l].solid_density / top * 1.15, step = 1e-6 * rho;
@@ -390,8 +378,7 @@ static void wave_speeds(void **state) {
   assert_true(closed.wave_speed == closed.sound_speed);
 }
 
-static void compaction_damage(void **state) {
-  (void)state;
+TEST(compaction_damage) {
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
   assert_true(sph_palpha_damage_cbrt(&law, 1.275) == 0);
   near(sph_palpha_damage_cbrt(&law, 1), 1, 1e-15, "all pores closed");
@@ -404,8 +391,7 @@ static void compaction_damage(void **state) {
 
 /* Any path: alpha within [1, alpha_0], rest never rises, all finite, P continuous along small steps (bounded by the
  * largest slope), P_s(alpha rho, u)/alpha is the pressure, and alpha not above the crush curve. */
-static void random_paths(void **state) {
-  (void)state;
+TEST(random_paths) {
   const struct sph_palpha_material *given[] = {&porous_aluminium, &pumice, &porous_ice};
   const struct sph_material *solid[] = {&aluminium, &pumice_matrix, &ice};
   uint64_t draw = 0;
@@ -445,8 +431,7 @@ static void random_paths(void **state) {
 }
 
 /* However soft the pores: an accepted law follows its elastic branch to P_e; others are refused. */
-static void soft_pores_follow_their_branch(void **state) {
-  (void)state;
+TEST(soft_pores_follow_their_branch) {
   int taken = 0, left = 0;
   for (double speed = 10; speed < 4000; speed *= 1.05)
     for (int k = 0; k < 2; k++) {
@@ -468,8 +453,7 @@ static void soft_pores_follow_their_branch(void **state) {
   assert_true(taken > 50 && left > 50);
 }
 
-static void refused(void **state) {
-  (void)state;
+TEST(refused) {
   struct sph_palpha_law law;
   struct error error;
   struct sph_palpha_material bad[13];
@@ -499,24 +483,4 @@ static void refused(void **state) {
   law = law_of(&low, &pumice_matrix);
   struct sph_palpha_state s = sph_palpha_update(&law, 3, 3, 2327.0 / 3 * 1.0001, 0);
   assert_true(s.distention == 3 && s.pressure > 0.2e6);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(printed_values),
-                                     cmocka_unit_test(curve_slopes),
-                                     cmocka_unit_test(elastic_branch),
-                                     cmocka_unit_test(derivatives),
-                                     cmocka_unit_test(against_the_rate_form),
-                                     cmocka_unit_test(load_unload_reload),
-                                     cmocka_unit_test(jump),
-                                     cmocka_unit_test(solid_limit),
-                                     cmocka_unit_test(few_pores_do_little_harm),
-                                     cmocka_unit_test(heat),
-                                     cmocka_unit_test(compaction_damage),
-                                     cmocka_unit_test(sound_speeds),
-                                     cmocka_unit_test(wave_speeds),
-                                     cmocka_unit_test(random_paths),
-                                     cmocka_unit_test(soft_pores_follow_their_branch),
-                                     cmocka_unit_test(refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

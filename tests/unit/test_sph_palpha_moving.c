@@ -50,8 +50,7 @@ static void respond(struct sph_system *s) {
 }
 
 /* Random states, all branches mixed within a block: the loop gives what sph_palpha_update gives. */
-static void loop_is_the_formula(void **state) {
-  (void)state;
+TEST(loop_is_the_formula) {
   const struct sph_palpha_material *given[] = {&porous_basalt, &two_power};
   for (uint64_t round = 0; round < 60; round++) {
     size_t n;
@@ -87,8 +86,7 @@ static void loop_is_the_formula(void **state) {
 }
 
 /* S is the bulk deviator: alpha S holds while alpha changes. */
-static void deviator_follows_alpha(void **state) {
-  (void)state;
+TEST(deviator_follows_alpha) {
   size_t n;
   struct sph_system *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++) {
@@ -108,8 +106,7 @@ static void deviator_follows_alpha(void **state) {
 }
 
 /* dS/dt = (f/alpha) 2 mu dev(eps) + R S - S R: simple shear at 1/s, stress-free. */
-static void shear_rate(void **state) {
-  (void)state;
+TEST(shear_rate) {
   size_t n;
   struct sph_system *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++)
@@ -135,8 +132,7 @@ static void shear_rate(void **state) {
   sph_system_free(s);
 }
 
-static void yield_falls_with_alpha(void **state) {
-  (void)state;
+TEST(yield_falls_with_alpha) {
   size_t n;
   struct sph_system *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++) {
@@ -154,8 +150,7 @@ static void yield_falls_with_alpha(void **state) {
 }
 
 /* The tension limit is that of the porous body, whatever its distention. It falls as far as the solid has expanded. */
-static void tension_limit_is_of_the_body(void **state) {
-  (void)state;
+TEST(tension_limit_is_of_the_body) {
   size_t n;
   struct sph_system *s = cube(&porous_basalt, false, false, &n);
   s->solid[0].physics.material.tension_limit.pressure = 1e6;
@@ -177,8 +172,7 @@ static void tension_limit_is_of_the_body(void **state) {
 }
 
 /* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change causes no damage. */
-static void damage_adds_up(void **state) {
-  (void)state;
+TEST(damage_adds_up) {
   for (int flaws = 0; flaws < 2; flaws++) {
     size_t n;
     struct sph_system *s = cube(&porous_basalt, true, flaws, &n);
@@ -250,8 +244,7 @@ static void *saved(const struct sph_system *s, size_t *size) {
 }
 
 /* alpha_0 = 1 is the solid itself: the same bits and bytes, and no arrays for pores. */
-static void solid_bits(void **state) {
-  (void)state;
+TEST(solid_bits) {
   struct sph_palpha_material none = porous_basalt;
   none.distention = 1;
   struct impact a = impact_of(&none, &none, true), b = impact_of(NULL, NULL, true);
@@ -276,8 +269,7 @@ static void solid_bits(void **state) {
 
 /* No flaw opens here, so all damage comes from compaction, in the porous body alone. The distention limiter keeps
  * |dalpha| within 0.01 per step. */
-static void beside_a_solid(void **state) {
-  (void)state;
+TEST(beside_a_solid) {
   struct impact m = impact_of(&porous_basalt, NULL, true);
   double last[725], rest[725], most = 0;
   for (size_t i = 0; i < 725; i++)
@@ -314,8 +306,7 @@ static void beside_a_solid(void **state) {
   impact_end(&m);
 }
 
-static void restart(void **state) {
-  (void)state;
+TEST(restart) {
   struct impact a = impact_of(&porous_basalt, &two_power, true), b = impact_of(&porous_basalt, &two_power, true);
   case_steps(a.s, 40);
   size_t size;
@@ -335,8 +326,7 @@ static void restart(void **state) {
 }
 
 /* Few pores: the run approaches the solid's in proportion to alpha_0 - 1. */
-static void tends_to_the_solid(void **state) {
-  (void)state;
+TEST(tends_to_the_solid) {
   struct impact solid = impact_of(NULL, NULL, false);
   case_run(solid.s, 1.5e-6);
   sph_system_read(solid.s, solid.p);
@@ -362,8 +352,7 @@ static void tends_to_the_solid(void **state) {
   impact_end(&solid);
 }
 
-static void refused(void **state) {
-  (void)state;
+TEST(refused) {
   struct case_block block = {.count = {3, 3, 3}, .spacing = 1e-3};
   struct sph_particles *p = case_make(&block, 1, 1800, 1.05, SPH_WITH_DISTENTION);
   struct sph_body_physics body = {.material = case_basalt};
@@ -380,19 +369,4 @@ static void refused(void **state) {
   assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "distention"));
   sph_particles_free(p);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(loop_is_the_formula),
-                                     cmocka_unit_test(deviator_follows_alpha),
-                                     cmocka_unit_test(shear_rate),
-                                     cmocka_unit_test(yield_falls_with_alpha),
-                                     cmocka_unit_test(tension_limit_is_of_the_body),
-                                     cmocka_unit_test(damage_adds_up),
-                                     cmocka_unit_test(solid_bits),
-                                     cmocka_unit_test(beside_a_solid),
-                                     cmocka_unit_test(restart),
-                                     cmocka_unit_test(tends_to_the_solid),
-                                     cmocka_unit_test(refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

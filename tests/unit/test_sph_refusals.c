@@ -7,8 +7,7 @@
 #include "engine/sph/run/run.h"
 #include "engine/sph/step/system.h"
 
-static void more_than_memory_is_refused(void **state) {
-  (void)state;
+TEST(more_than_memory_is_refused) {
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=1900000000");
   void *run = &run;
   struct error error = {0};
@@ -28,8 +27,7 @@ static size_t address_space(void) {
 }
 
 /* Lists that exceed the memory in the middle of a run: an attempt that failed, never a stored result. */
-static void memory_that_runs_out_is_no_result(void **state) {
-  (void)state;
+TEST(memory_that_runs_out_is_no_result) {
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=4000");
   struct rlimit before, tight;
   struct error error = {0};
@@ -56,8 +54,7 @@ static void memory_that_runs_out_is_no_result(void **state) {
 #endif
 
 /* The error of an overlap names the overlap. */
-static void overlapping_bodies_are_refused(void **state) {
-  (void)state;
+TEST(overlapping_bodies_are_refused) {
   struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300");
   inputs.collision.gap = 1e-6;
   void *run;
@@ -67,8 +64,7 @@ static void overlapping_bodies_are_refused(void **state) {
 }
 
 /* Grips and damping layers without any particle are refused: they would have no effect. */
-static void empty_layers_are_refused(void **state) {
-  (void)state;
+TEST(empty_layers_are_refused) {
   const struct {
     struct sph_inputs inputs;
     const char *word;
@@ -85,8 +81,7 @@ static void empty_layers_are_refused(void **state) {
 }
 
 /* The h of matter that flies apart grows; in a periodic slab it is limited by the slab's width. */
-static void vapour_in_a_slab(void **state) {
-  (void)state;
+TEST(vapour_in_a_slab) {
   const struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.speed=50 km/s",
                                             "stop.end_time=10 us");
   struct ran ran = run_case_run(&sph_engine, &inputs, 1);
@@ -130,8 +125,7 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
   free(ran.fragments);
 }
 
-static void ends_of_the_ranges(void **state) {
-  (void)state;
+TEST(ends_of_the_ranges) {
   char file[100];
   snprintf(file, sizeof file, "/tmp/clast_sph_engine_%d.yaml", (int)getpid());
   FILE *out = fopen(file, "w");
@@ -172,18 +166,4 @@ static void ends_of_the_ranges(void **state) {
   extreme("impact.angle=89.9 deg", "projectile.radius=1 cm", "impact.angle=89.9 deg", "impact.speed=3 km/s");
   extreme("target.spin=1e9 rad/s", "method.gradient_correction=true", NOTHING, NOTHING);
   unlink(file);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(more_than_memory_is_refused),
-#ifndef __SANITIZE_ADDRESS__
-      cmocka_unit_test(memory_that_runs_out_is_no_result),
-#endif
-      cmocka_unit_test(overlapping_bodies_are_refused),
-      cmocka_unit_test(empty_layers_are_refused),
-      cmocka_unit_test(vapour_in_a_slab),
-      cmocka_unit_test(ends_of_the_ranges),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@
 
 /* The static strength breaks only matter that cracks have entered. A body that cannot crack stays whole, however it
  * vibrates. So does one whose flaws are all stronger than the impact. */
-static void sound_matter_stays_whole(void **state) {
-  (void)state;
+TEST(sound_matter_stays_whole) {
   const struct sph_inputs cases[] = {SMALL("target.fracture=off"),
                                      SMALL("target.material.weibull.m=100", "target.material.weibull.k=1e200 1/m^3")};
   for (int c = 0; c < 2; c++) {
@@ -27,8 +26,7 @@ static void sound_matter_stays_whole(void **state) {
 }
 
 /* A body with almost no pores breaks like the solid. */
-static void few_pores_change_nothing(void **state) {
-  (void)state;
+TEST(few_pores_change_nothing) {
   const struct sph_inputs cases[] = {SMALL("stop.end_time=10 us"),
                                      SMALL("stop.end_time=10 us", "target.material.porosity.curve=quadratic",
                                            "target.material.porosity.distention=1.0000001",
@@ -48,8 +46,7 @@ static void few_pores_change_nothing(void **state) {
 
 /* Dust means lighter than a mass of the scene, not one particle; a fragment of few particles has no shape and no
  * motion. */
-static void small_fragments(void **state) {
-  (void)state;
+TEST(small_fragments) {
   for (int c = 0; c < 2; c++) { /* a largest fragment of more and of less than 100 particles */
     const struct sph_inputs inputs = SMALL(c ? "impact.speed=6 km/s" : "impact.speed=2 km/s",
                                            "fragments.dust_mass=10 g");
@@ -74,8 +71,7 @@ static void small_fragments(void **state) {
 }
 
 /* The particles of a graded body have many masses: the spectrum is complete from 9.5 of the heaviest on. */
-static void complete_by_the_heaviest(void **state) {
-  (void)state;
+TEST(complete_by_the_heaviest) {
   const struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.graded=true", "fidelity.spacings_per_radius=3",
                                             "fidelity.coarsest=3", "fidelity.particles=1200",
                                             "fidelity.projectile_spacing=1", "stop.end_time=20 us");
@@ -93,8 +89,7 @@ static void complete_by_the_heaviest(void **state) {
 
 /* The figures of the ledger in the report, computed again from the particles. Bounds alone do not detect a figure that
  * is ten times too small. */
-static void figures_by_hand(void **state) {
-  (void)state;
+TEST(figures_by_hand) {
   const struct sph_inputs cases[] = {SMALL("impact.speed=20 km/s", "stop.end_time=10 us", "viscosity.alpha=0",
                                            "viscosity.beta=0",          /* no heat: u is clamped */
                                            "fidelity.precision=float"), /* momentum that can be seen to be lost */
@@ -170,8 +165,7 @@ static void figures_by_hand(void **state) {
 }
 
 /* A part larger than its whole is an error of the sums and is reported unchanged; without a whole there is no share. */
-static void a_share_above_one_is_shown(void **state) {
-  (void)state;
+TEST(a_share_above_one_is_shown) {
   const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
@@ -196,8 +190,7 @@ static void a_share_above_one_is_shown(void **state) {
 }
 
 /* A result that cannot be determined is off, not a plausible number. */
-static void no_angle_of_nowhere(void **state) {
-  (void)state;
+TEST(no_angle_of_nowhere) {
   const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
@@ -213,8 +206,7 @@ static void no_angle_of_nowhere(void **state) {
 }
 
 /* A body that rebounds carries momentum back, and the target gains as much more: of both bodies none is lost. */
-static void rebound_counts_in_the_enhancement(void **state) {
-  (void)state;
+TEST(rebound_counts_in_the_enhancement) {
   const struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=300", "fidelity.projectile_spacing=1",
                                             "impact.projectile=mass", "impact.mass=60 g", "impact.gap=0.1 mm",
                                             "target.fracture=off", "impact.speed=40 m/s", "impact.angle=0 deg",
@@ -241,18 +233,4 @@ static void rebound_counts_in_the_enhancement(void **state) {
   assert_true(ran.results.sph.ejecta.momentum_enhancement == 1);
   free(ran.fragments);
   sph_run_free(run);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sound_matter_stays_whole),
-      cmocka_unit_test(few_pores_change_nothing),
-      cmocka_unit_test(small_fragments),
-      cmocka_unit_test(complete_by_the_heaviest),
-      cmocka_unit_test(figures_by_hand),
-      cmocka_unit_test(rebound_counts_in_the_enhancement),
-      cmocka_unit_test(a_share_above_one_is_shown),
-      cmocka_unit_test(no_angle_of_nowhere),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@ enum { MOST = 130 };
 static const size_t sizes[] = {1, 63, 64, 65, 128, MOST};
 #define FOR_SIZES(count) for (size_t k_ = 0, count; k_ < sizeof sizes / sizeof *sizes && (count = sizes[k_]); k_++)
 
-static void words_hold_every_number(void **state) {
-  (void)state;
+TEST(words_hold_every_number) {
   assert_int_equal(SET_WORDS(63), 1);
   assert_int_equal(SET_WORDS(64), 1);
   assert_int_equal(SET_WORDS(65), 2);
@@ -17,8 +16,7 @@ static void words_hold_every_number(void **state) {
 }
 
 /* Every range of every size, against an array of flags. */
-static void ranges(void **state) {
-  (void)state;
+TEST(ranges) {
   FOR_SIZES(count)
   for (size_t first = 0; first < count; first++)
     for (size_t length = 0; first + length <= count; length++) {
@@ -36,8 +34,7 @@ static void ranges(void **state) {
     }
 }
 
-static void a_union(void **state) {
-  (void)state;
+TEST(a_union) {
   FOR_SIZES(count) {
     uint64_t word[SET_WORDS(MOST)] = {0}, other[SET_WORDS(MOST)] = {0};
     set_add(word, 0, 1);
@@ -52,13 +49,4 @@ static void a_union(void **state) {
     set_unite(word, (uint64_t[SET_WORDS(MOST)]){0}, count);
     assert_memory_equal(word, other, sizeof word);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(words_hold_every_number),
-      cmocka_unit_test(ranges),
-      cmocka_unit_test(a_union),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,8 +27,7 @@ static void uniforms(uint64_t item, double u[3]) {
 
 /* The share of a box around the shape that is inside it. 2e5 throws: sd below 0.3 % of the volume; 1.2 % is four of
  * them. */
-static void volume_is_what_is_inside(void **state) {
-  (void)state;
+TEST(volume_is_what_is_inside) {
   for (int s = 0; s < 4; s++) {
     double reach[3], u[3], p[3], around = 1;
     for (int k = 0; k < 3; k++) {
@@ -60,8 +59,7 @@ static double inner_volume(const struct sph_shape *s, double depth) {
   return sph_shape_volume(&inner);
 }
 
-static void places_are_uniform(void **state) {
-  (void)state;
+TEST(places_are_uniform) {
   enum { PARTS = 20, THROWS = 40000 };
   for (int s = 0; s < 4; s++) {
     int count[PARTS] = {0}, right = 0;
@@ -85,8 +83,7 @@ static void places_are_uniform(void **state) {
 
 /* Inside and outside, the distance is that to the nearest of many points of the surface, and going back along the
  * normal by the distance ends on the surface. */
-static void distance_leads_to_the_surface(void **state) {
-  (void)state;
+TEST(distance_leads_to_the_surface) {
   for (int s = 0; s < 4; s++)
     for (uint64_t i = 0; i < 2000; i++) {
       double u[3], p[3], q[3], normal[3], again[3];
@@ -122,8 +119,7 @@ static struct sph_shape at(const struct sph_shape *s, double x, double y, double
   return moved;
 }
 
-static void gaps_and_overlaps(void **state) {
-  (void)state;
+TEST(gaps_and_overlaps) {
   struct sph_shape a = at(&sphere, 0, 0, 0), b = at(&sphere, 3, 4, 0);
   assert_true(fabs(sph_shape_gap(&a, &b) - 1) < 1e-14);
   b = at(&sphere, 0, 3, 0);
@@ -155,8 +151,7 @@ static void gaps_and_overlaps(void **state) {
   assert_true(sph_shape_gap(&x, &y) < 0);
 }
 
-static void flights_hit_or_miss(void **state) {
-  (void)state;
+TEST(flights_hit_or_miss) {
   struct sph_shape target = at(&sphere, 0, 0, 0), shot = at(&sphere, 10, 0, 0);
   double when;
   assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, &when) <= 0);
@@ -176,8 +171,7 @@ static void flights_hit_or_miss(void **state) {
   assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){1, 0, -0.2}, NULL) > 0);
 }
 
-static void rays_leave_by_the_surface(void **state) {
-  (void)state;
+TEST(rays_leave_by_the_surface) {
   for (int s = 0; s < 4; s++)
     for (uint64_t i = 0; i < 200; i++) {
       double u[3], d[3], p[3], normal[3];
@@ -190,13 +184,4 @@ static void rays_leave_by_the_surface(void **state) {
       assert_true(fabs(sph_shape_distance(&hull, p, NULL)) < 1e-12);
       assert_true(normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2] > 0);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(volume_is_what_is_inside),      cmocka_unit_test(places_are_uniform),
-      cmocka_unit_test(distance_leads_to_the_surface), cmocka_unit_test(gaps_and_overlaps),
-      cmocka_unit_test(flights_hit_or_miss),           cmocka_unit_test(rays_leave_by_the_surface),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

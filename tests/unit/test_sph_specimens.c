@@ -9,8 +9,7 @@
 
 /* The number of flaws is the one that explain prints and that the memory estimate uses; small cells at the surface do
  * not add to it. */
-static void flaws_are_as_many_as_told(void **state) {
-  (void)state;
+TEST(flaws_are_as_many_as_told) {
   static const char *const cracked[] = {"disruption", "solid-ice", "basalt-sphere"};
   for (size_t k = 0; k < sizeof cracked / sizeof *cracked; k++) {
     const struct sph_inputs inputs = SPH_CASE(cracked[k], "fidelity.particles=4000", "projectile.fracture=off",
@@ -24,8 +23,7 @@ static void flaws_are_as_many_as_told(void **state) {
   }
 }
 
-static void seeds_move_flaws(void **state) {
-  (void)state;
+TEST(seeds_move_flaws) {
   struct sph_inputs inputs = SMALL("stop.end_time=30 us"),
                     poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
   struct ran a = run_case_run(&sph_engine, &inputs, 1), b = run_case_run(&sph_engine, &inputs, 2),
@@ -39,8 +37,7 @@ static void seeds_move_flaws(void **state) {
 }
 
 /* Each seed is its own specimen unless a scene says otherwise: another lattice, other strengths of the flaws. */
-static void seeds_are_specimens(void **state) {
-  (void)state;
+TEST(seeds_are_specimens) {
   static const char *const torn[] = {"disruption", "solid-ice", "pumice-sphere"};
   for (size_t k = 0; k < sizeof torn / sizeof *torn; k++) {
     const struct sph_inputs inputs = SPH_CASE(torn[k], "fidelity.particles=1500", "fidelity.projectile_spacing=0.2");
@@ -64,13 +61,4 @@ static void seeds_are_specimens(void **state) {
   assert_false(SPH_CASE("colliding-cylinders", NULL).target.turned);
   assert_int_equal(SPH_CASE("basalt-sphere", NULL).weibull.draw, SPH_FLAWS_RANKED);
   assert_int_equal(SPH_CASE("tensile-rod", NULL).weibull.draw, SPH_FLAWS_RANKED);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(flaws_are_as_many_as_told),
-      cmocka_unit_test(seeds_move_flaws),
-      cmocka_unit_test(seeds_are_specimens),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,7 @@
 /* The moving solid: conservation in a collision with fracture, ledger, limits and rates by hand, absent modules. */
 #include "tests/support/sph_collision.h"
 
-static void conserved(void **state) {
-  (void)state;
+TEST(conserved) {
   struct collision c = collide(1000);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   const struct sph_ledger first = sph_system_ledger(s);
@@ -21,8 +20,7 @@ static void conserved(void **state) {
 }
 
 /* The sums themselves, written again: a ledger with a wrong sign or factor would be conserved as well. */
-static void ledger_by_hand(void **state) {
-  (void)state;
+TEST(ledger_by_hand) {
   const struct case_block block = {{4, 3, 5}, {-1e-3, 2e-3, 5e-3}, {3, -7, 11}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
   double kinetic = 0, internal = 0, px = 0, py = 0, pz = 0, lx = 0, ly = 0, lz = 0, scale = 0;
@@ -69,8 +67,7 @@ static void see_sums(struct sph_system *s, const struct sph_solid *body, struct 
 
 /* Every limit of the step as defined in motion.h, from the columns, during an impact; the step is the smallest of them.
  */
-static void limits_by_hand(void **state) {
-  (void)state;
+TEST(limits_by_hand) {
   struct collision c = collide(1000);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   assert_true(s->n <= sizeof seen_signal / sizeof *seen_signal);
@@ -147,8 +144,7 @@ static struct sph_particles *seen_in_flight(const double boost[3], double step[B
 }
 
 /* Galilean invariance: an observer in motion sees the same steps and the same motion. */
-static void boosted(void **state) {
-  (void)state;
+TEST(boosted) {
   const double rest[3] = {0, 0, 0}, boost[3] = {100, -60, 80};
   double step[2][BOOSTED_STEPS], time[2], apart = 0, uneven = 0;
   struct sph_particles *at_rest = seen_in_flight(rest, step[0], &time[0]);
@@ -166,8 +162,7 @@ static void boosted(void **state) {
 }
 
 /* h^3 rho is conserved while matter is compressed and expands, within the bounds of h. */
-static void h_follows_density(void **state) {
-  (void)state;
+TEST(h_follows_density) {
   struct collision c = collide(3000);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   double densest = 1, thinnest = 1;
@@ -187,8 +182,7 @@ static void h_follows_density(void **state) {
 }
 
 /* Damping as strong as three Courant steps allow: motion dies out and no energy is gained. */
-static void fast_damping(void **state) {
-  (void)state;
+TEST(fast_damping) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 10}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMPING);
   const struct sph_body_physics body = {.material = case_basalt, .strength = true};
@@ -213,8 +207,7 @@ static void fast_damping(void **state) {
 
 /* A block's slack is never above the smallest slack of its particles; when used up it is computed again. So no list
  * misses a pair. */
-static void slack_is_never_overrated(void **state) {
-  (void)state;
+TEST(slack_is_never_overrated) {
   struct collision c = collide(1000);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   size_t kept = 0, looked_up = 0;
@@ -241,8 +234,7 @@ static void slack_is_never_overrated(void **state) {
 
 /* Flaws open by eq. 21, from the damaged stress: E eps = lambda(S) - P under tension, lambda(S) - P/(1-D) under
  * pressure. */
-static void flaws_open_by_the_damaged_stress(void **state) {
-  (void)state;
+TEST(flaws_open_by_the_damaged_stress) {
   struct collision c = collide(0);
   c.parameters.in.fracture.cap = SPH_CAP_NONE;
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
@@ -287,8 +279,7 @@ static void load_all(struct sph_system *s, double tension, double pressure) {
 
 /* Damage at its cap has no rate: otherwise it would continue to shorten the time step. Below the cap it grows up to the
  * cap and not beyond it. */
-static void growth_ends_at_the_cap(void **state) {
-  (void)state;
+TEST(growth_ends_at_the_cap) {
   struct collision c = collide(0);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   static const double share[] = {0.5, 0.999, 1, 1.001}; /* of the cap, in D^(1/3) */
@@ -319,8 +310,7 @@ static void growth_ends_at_the_cap(void **state) {
 }
 
 /* Heun: half a step by the rate of the old state, half by that of the new one; also where the load has gone. */
-static void growth_is_the_mean_of_two_rates(void **state) {
-  (void)state;
+TEST(growth_is_the_mean_of_two_rates) {
   struct collision c = collide(0);
   c.parameters.in.fracture.cap = SPH_CAP_NONE;
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
@@ -339,8 +329,7 @@ static void growth_is_the_mean_of_two_rates(void **state) {
 
 /* Under pressure a flaw closes as damage grows: at the D of this table, E eps = lambda(S) - P/(1-D) falls to its
  * threshold. Damage stops there for any step length, and it never heals. */
-static void pressure_shuts_flaws(void **state) {
-  (void)state;
+TEST(pressure_shuts_flaws) {
   static const struct {
     double tension, pressure, damage; /* of the weakest flaw's E eps; D = 1 - P/(lambda - 1) */
   } cases[] = {{2, 0.8, 0.2}, {3, 0.5, 0.75}, {2, 0.999, 0.001}, {2, 1.001, 0}, {0.9, 0.01, 0}};
@@ -369,8 +358,7 @@ static void pressure_shuts_flaws(void **state) {
 
 /* A fast body makes lists invalid soon. With slack for many steps each of its particles would list most of the others.
  * Lists are then made for fewer steps, so that a pass sums few surplus pairs. Bodies at rest list for many steps. */
-static void lists_stay_short_in_a_fast_body(void **state) {
-  (void)state;
+TEST(lists_stay_short_in_a_fast_body) {
   static const double speeds[] = {0, 5000};
   double beyond[2];
   for (int k = 0; k < 2; k++) {
@@ -397,8 +385,7 @@ static size_t columns_of(size_t module, size_t other, const struct sph_body_phys
   return set_size(columns.word, SPH_COLUMNS);
 }
 
-static void absent(void **state) {
-  (void)state;
+TEST(absent) {
   struct collision c = collide(1000);
   struct sph_system *solid = case_system(c.particles, 2, c.physics, &c.parameters);
   for (int b = 0; b < 2; b++)
@@ -448,8 +435,7 @@ static void absent(void **state) {
 
 /* A wall of held particles is pushed by a moving block: its work is booked. A damped one gives its energy to `damped`.
  */
-static void held(void **state) {
-  (void)state;
+TEST(held) {
   const struct case_block block = {{6, 6, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_HELD | SPH_WITH_DAMPING);
   for (size_t i = 0; i < p->n; i++) {
@@ -479,23 +465,4 @@ static void held(void **state) {
   }
   sph_system_free(s);
   sph_particles_free(p);
-}
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(conserved),
-      cmocka_unit_test(lists_stay_short_in_a_fast_body),
-      cmocka_unit_test(absent),
-      cmocka_unit_test(held),
-      cmocka_unit_test(growth_ends_at_the_cap),
-      cmocka_unit_test(growth_is_the_mean_of_two_rates),
-      cmocka_unit_test(pressure_shuts_flaws),
-      cmocka_unit_test(ledger_by_hand),
-      cmocka_unit_test(limits_by_hand),
-      cmocka_unit_test(boosted),
-      cmocka_unit_test(h_follows_density),
-      cmocka_unit_test(fast_damping),
-      cmocka_unit_test(slack_is_never_overrated),
-      cmocka_unit_test(flaws_open_by_the_damaged_stress),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@ static void assert_same_bits(const struct sph_system *a, const struct sph_system
   free(right);
 }
 
-static void restarted(void **state) {
-  (void)state;
+TEST(restarted) {
   struct collision c = collide(1000);
   struct sph_system *whole = case_system(c.particles, 2, c.physics, &c.parameters);
   struct sph_system *again = case_system(c.particles, 2, c.physics, &c.parameters);
@@ -80,8 +79,7 @@ static struct collision everything_on(int precision) {
   return c;
 }
 
-static void every_module(void **state) {
-  (void)state;
+TEST(every_module) {
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct collision c = everything_on(precision);
     struct sph_system *whole = case_system(c.particles, 2, c.physics, &c.parameters);
@@ -108,8 +106,7 @@ static void every_module(void **state) {
 }
 
 /* Physics does not depend on the axes: the same scene with x, y, z permuted, or mirrored, gives the same. */
-static void no_axis_is_special(void **state) {
-  (void)state;
+TEST(no_axis_is_special) {
   enum { PLAIN, TURNED, MIRRORED, SCENES };
   struct sph_particles *seen[SCENES];
   for (int scene = 0; scene < SCENES; scene++) {
@@ -164,8 +161,7 @@ static void no_axis_is_special(void **state) {
     sph_particles_free(seen[scene]);
 }
 
-static void threads(void **state) {
-  (void)state;
+TEST(threads) {
   struct collision c = collide(1000);
   struct sph_system *one = case_system(c.particles, 2, c.physics, &c.parameters);
   c.parameters.in.fidelity.threads = 2;
@@ -180,8 +176,7 @@ static void threads(void **state) {
 
 /* Ids mean nothing to the physics: the same solid with its particles numbered backwards moves the same to the last bit.
  * Only ties on the space-filling curve could change the order of sums; here there are none. */
-static void renumbered(void **state) {
-  (void)state;
+TEST(renumbered) {
   const struct case_block block = {{6, 5, 4}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS),
                        *q = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
@@ -209,12 +204,4 @@ static void renumbered(void **state) {
   sph_system_free(b);
   sph_particles_free(p);
   sph_particles_free(q);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(restarted), cmocka_unit_test(every_module), cmocka_unit_test(no_axis_is_special),
-      cmocka_unit_test(threads),   cmocka_unit_test(renumbered),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 
 /* At 70 km/s, ten times the speed of sound, a body must not jump into another between two steps. The Courant condition
  * alone would allow this, because it sees only pairs already in reach; the energy would then grow several times. */
-static void fast(void **state) {
-  (void)state;
+TEST(fast) {
   for (int gap = 0; gap < 4; gap++) {
     struct collision c = collide(70000);
     for (size_t i = 0; i < c.particles->n; i++)
@@ -27,8 +26,7 @@ static void fast(void **state) {
 
 /* Matter that does more work than its internal energy allows: the ledger books the energy added by the clamp, to the
  * joule. */
-static void clamps(void **state) {
-  (void)state;
+TEST(clamps) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
   for (size_t i = 0; i < p->n;
@@ -55,8 +53,7 @@ static void clamps(void **state) {
 }
 
 /* Density does not fall below its bound; energy is conserved. */
-static void thin(void **state) {
-  (void)state;
+TEST(thin) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
   for (size_t i = 0; i < p->n; i++)
@@ -77,8 +74,7 @@ static void thin(void **state) {
 /* The bound itself: that of a particle alone, m W(0) at the largest h it may have. (Of thinner matter P/rho^2 has no
  * bound: nylon debris at 1e-3 of its density has driven runs apart; that takes tens of thousands of particles.) It is a
  * share of what the body has at rest: matter of many pores keeps its density. */
-static void not_thinner_than_alone(void **state) {
-  (void)state;
+TEST(not_thinner_than_alone) {
   static const struct sph_palpha_material pores = {.distention = 50,
                                                    .curve = SPH_CRUSH_QUADRATIC,
                                                    .elastic_pressure = 1e6,
@@ -103,8 +99,7 @@ static void not_thinner_than_alone(void **state) {
   sph_particles_free(p);
 }
 
-static void lost(void **state) {
-  (void)state;
+TEST(lost) {
   struct collision c = collide(1000);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   case_steps(s, 5);
@@ -128,8 +123,7 @@ static void lost(void **state) {
   let_go(&c);
 }
 
-static void refused(void **state) {
-  (void)state;
+TEST(refused) {
   struct collision c = collide(1000);
   struct sph_system *s = NULL;
   struct error error;
@@ -159,13 +153,4 @@ static void refused(void **state) {
                    STATUS_CONTENT);
   assert_non_null(strstr(error.message, "out of order"));
   let_go(&c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fast), cmocka_unit_test(clamps),
-      cmocka_unit_test(thin), cmocka_unit_test(not_thinner_than_alone),
-      cmocka_unit_test(lost), cmocka_unit_test(refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,8 +47,7 @@ static long double pressure_again(const struct sph_tillotson_material *t, long d
  * about (step * exponent)^2 = 1e-9 to truncation (the steepest term is exp(-alpha z^2) with alpha z^2 up to 80 here)
  * and 1e-13 to rounding; 1e-7 of the size of the terms covers that and is far below any wrong term. No step straddles
  * E_iv, E_cv or rho0, where the derivatives jump: that each case stays on one branch is checked. */
-static void derivatives(void **state) {
-  (void)state;
+TEST(derivatives) {
   const double densities[] = {0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.999, 1.001, 1.05, 1.2, 2, 4, 10, 100};
   int branch_seen[4] = {0}; /* compressed, cold, mixed, hot */
   for (int k = 0; k < MATERIALS; k++) {
@@ -94,8 +93,7 @@ static void derivatives(void **state) {
 
 /* From nearly zero to a hundred times the density, and beyond any energy that 70 km/s can produce: finite, c above its
  * floor, and the loops of all CPU classes give what the formula gives. */
-static void extremes(void **state) {
-  (void)state;
+TEST(extremes) {
   enum { SIDE = 8 };
   const double etas[SIDE] = {1e-12, 1e-6, 1e-3, 0.01, 0.1, 1, 10, 100},
                energies[SIDE] = {-1e12, -1, -0.0, 0, 1e-300, 1, 2.45e9, 1e12};
@@ -144,8 +142,7 @@ static void extremes(void **state) {
 /* P is continuous in u at E_iv and E_cv and in rho at rho0, at any energy. The jump over a relative step of 2e-12 is
  * bounded by the slope: |dP/dlnu| and |dP/dlnrho| stay below 10 (A + rho u), hence 1e-10 of that; a wrong weight jumps
  * by parts of it. */
-static void continuous(void **state) {
-  (void)state;
+TEST(continuous) {
   const double step = 1e-12;
   for (int k = 0; k < MATERIALS; k++) {
     const struct sph_tillotson_material *t = &materials[k].t;
@@ -165,8 +162,7 @@ static void continuous(void **state) {
   }
 }
 
-static void known_values(void **state) {
-  (void)state;
+TEST(known_values) {
   /* at rest: no pressure, c = sqrt(A/rho0) */
   struct sph_pressure rest = sph_tillotson(&basalt, basalt_density, basalt_density, 0);
   expect_near(rest.sound_speed, sqrt(2.67e10 / 2700), 1e-14, "sound speed at rest");
@@ -182,10 +178,4 @@ static void known_values(void **state) {
   struct sph_pressure cold = sph_tillotson(&basalt, basalt_density, 2000, -basalt.E0 * 4 / 7.29);
   assert_true(cold.pressure == sph_tillotson(&basalt, basalt_density, 2000, 0).pressure);
   assert_true(isfinite(cold.sound_speed) && cold.sound_speed > 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(derivatives), cmocka_unit_test(continuous),
-                                     cmocka_unit_test(known_values), cmocka_unit_test(extremes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

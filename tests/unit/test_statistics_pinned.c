@@ -1,7 +1,6 @@
 /* Every function of the statistics on small samples of many kinds, pinned in statistics.txt (tests/support/pinned.h):
  * empty, single, equal and tied values, values off, few and many. Other tests judge what the numbers mean; this one
  * says that they stay. */
-#include "analysis/analysis.h"
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -436,8 +435,7 @@ static void of_nothing(void) {
   }
 }
 
-static void numbers_stay(void **state) {
-  (void)state;
+TEST(numbers_stay) {
   char *text = NULL;
   size_t size = 0;
   assert_non_null(out = open_memstream(&text, &size));
@@ -451,17 +449,10 @@ static void part(void *context) {
   ((void (*)(void))(intptr_t)context)();
 }
 
-static void nothing_is_left(void **state) {
-  (void)state;
+TEST(nothing_is_left) {
   void (*const parts[])(void) = {of_pairs, of_ladders, of_masses, of_inputs, of_points};
   assert_non_null(out = fopen("/dev/null", "w"));
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
     pinned_frees("statistics", part, (void *)(intptr_t)parts[k]);
   fclose(out);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_stay), cmocka_unit_test(nothing_is_left)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,7 @@
 #include "schemas/status.h"
 #include "tests/support/check.h"
 
-static void values_are_sysexits(void **state) {
-  (void)state;
+TEST(values_are_sysexits) {
   assert_int_equal(STATUS_OK, 0);
   assert_int_equal(STATUS_FAILED_RUNS, 1);
   assert_int_equal(STATUS_USAGE, 64);
@@ -15,16 +14,10 @@ static void values_are_sysexits(void **state) {
   assert_int_equal(STATUS_STOPPED, 75);
 }
 
-static void fail_fills_and_returns(void **state) {
-  (void)state;
+TEST(fail_fills_and_returns) {
   struct error error = {0};
   assert_int_equal(status_fail(&error, STATUS_IO, "cannot write '%s'", "a.db"), STATUS_IO);
   assert_int_equal(error.status, STATUS_IO);
   assert_string_equal(error.message, "cannot write 'a.db'");
   assert_int_equal(status_fail(NULL, STATUS_USAGE, "x"), STATUS_USAGE);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(values_are_sysexits), cmocka_unit_test(fail_fills_and_returns)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,8 +50,7 @@ static void refused(const char *path, status writing, status reading, const char
   assert_true(size_of(path) == before);
 }
 
-static void foreign_files_are_refused(void **state) {
-  (void)state;
+TEST(foreign_files_are_refused) {
   char path[64];
   fixture_path(path, "text");
   FILE *out = fopen(path, "w");
@@ -77,8 +76,7 @@ static void foreign_files_are_refused(void **state) {
   refused(path, STATUS_CONTENT, STATUS_CONTENT, "damaged");
 }
 
-static void missing_and_unreachable(void **state) {
-  (void)state;
+TEST(missing_and_unreachable) {
   char path[64];
   refused(fixture_path(path, "absent/x"), STATUS_IO, STATUS_MISSING, "folder");
   mkdir("test-store-folder.db", 0777);
@@ -88,8 +86,7 @@ static void missing_and_unreachable(void **state) {
   assert_int_not_equal(access(path, F_OK), 0); /* opening a missing store makes no file */
 }
 
-static void empty_file_is_a_new_store(void **state) {
-  (void)state;
+TEST(empty_file_is_a_new_store) {
   char path[64];
   struct store *store = NULL;
   FILE *out = fopen(fixture_path(path, "empty"), "w");
@@ -103,8 +100,7 @@ static void empty_file_is_a_new_store(void **state) {
 }
 
 /* A file without a table is an empty file, not an incomplete copy. */
-static void failed_creation_leaves_an_empty_file(void **state) {
-  (void)state;
+TEST(failed_creation_leaves_an_empty_file) {
   char path[64];
   struct store *store = NULL;
   struct rlimit wide;
@@ -122,8 +118,7 @@ static void failed_creation_leaves_an_empty_file(void **state) {
 }
 
 /* Versions 0 to 2 are from before the first release: refused, with the remedy, and not changed. */
-static void oldest_stores_are_refused(void **state) {
-  (void)state;
+TEST(oldest_stores_are_refused) {
   char path[64];
   populated(fixture_path(path, "old"));
   for (int version = 0; version < SCHEMA_OLDEST; version++) {
@@ -135,8 +130,7 @@ static void oldest_stores_are_refused(void **state) {
 
 /* A reader needs every column of the common tables. A writer adds columns and tables that an older program lacked; they
  * are NULL in old runs. */
-static void missing_columns_are_added_by_a_writer(void **state) {
-  (void)state;
+TEST(missing_columns_are_added_by_a_writer) {
   static const char *const less[] = {"DROP VIEW runs; DROP VIEW points; ALTER TABLE run DROP COLUMN momentum_error; "
                                      "ALTER TABLE result_fake DROP COLUMN "
                                      "hardest",
@@ -164,8 +158,7 @@ static void missing_columns_are_added_by_a_writer(void **state) {
 }
 
 /* A migration that cannot finish leaves the old store unchanged. */
-static void failed_migration_changes_nothing(void **state) {
-  (void)state;
+TEST(failed_migration_changes_nothing) {
   char path[64];
   struct store *store = NULL;
   populated(fixture_path(path, "stuck"));
@@ -204,8 +197,7 @@ static int hold(const char *path, pid_t *pid) {
   return end[1];
 }
 
-static void second_writer_is_told_who_holds_it(void **state) {
-  (void)state;
+TEST(second_writer_is_told_who_holds_it) {
   char path[64], word[64], host[200] = "";
   struct store *store = NULL;
   pid_t pid;
@@ -261,8 +253,7 @@ static int open_twice(const char *name, char *path, struct store **store) {
 }
 
 /* Every call that writes or reads waits for another program, wherever in the life of a store it comes. */
-static void every_call_waits_for_another_program(void **state) {
-  (void)state;
+TEST(every_call_waits_for_another_program) {
   char path[64], other[64];
   struct store *store = NULL;
   int64_t session = 0, campaign = 0, added = 0, differing = 0;
@@ -288,8 +279,7 @@ static void every_call_waits_for_another_program(void **state) {
 }
 
 /* Told once, after a second. A wait that is ended is no fault of the store: the same command goes on. */
-static void a_wait_that_is_ended_is_a_stop(void **state) {
-  (void)state;
+TEST(a_wait_that_is_ended_is_a_stop) {
   char path[64];
   struct store *store = NULL;
   assert_int_equal(open_twice("ended", path, NULL), SQLITE_OK);
@@ -305,8 +295,7 @@ static void a_wait_that_is_ended_is_a_stop(void **state) {
   store_on_wait(NULL);
 }
 
-static void a_free_store_is_taken_at_once(void **state) {
-  (void)state;
+TEST(a_free_store_is_taken_at_once) {
   char path[64];
   struct store *store = NULL;
   assert_int_equal(open_twice("free", path, &store), SQLITE_OK);
@@ -325,8 +314,7 @@ static void a_free_store_is_taken_at_once(void **state) {
   store_on_wait(NULL);
 }
 
-static void reader_refuses_to_write(void **state) {
-  (void)state;
+TEST(reader_refuses_to_write) {
   char path[64];
   struct store *store = NULL;
   populated(fixture_path(path, "reader"));
@@ -339,30 +327,10 @@ static void reader_refuses_to_write(void **state) {
   OK(store_close(NULL, &error));
 }
 
-static void local_disk_brings_no_warning(void **state) {
-  (void)state;
+TEST(local_disk_brings_no_warning) {
   char path[64], warning[300] = "left";
   struct store *store = NULL;
   OK(store_open_writer(fixture_path(path, "warning"), &store, warning, sizeof warning, &error));
   assert_string_equal(warning, "");
   OK(store_close(store, &error));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(foreign_files_are_refused),
-      cmocka_unit_test(missing_and_unreachable),
-      cmocka_unit_test(empty_file_is_a_new_store),
-      cmocka_unit_test(failed_creation_leaves_an_empty_file),
-      cmocka_unit_test(oldest_stores_are_refused),
-      cmocka_unit_test(missing_columns_are_added_by_a_writer),
-      cmocka_unit_test(failed_migration_changes_nothing),
-      cmocka_unit_test(second_writer_is_told_who_holds_it),
-      cmocka_unit_test(every_call_waits_for_another_program),
-      cmocka_unit_test(a_wait_that_is_ended_is_a_stop),
-      cmocka_unit_test(a_free_store_is_taken_at_once),
-      cmocka_unit_test(reader_refuses_to_write),
-      cmocka_unit_test(local_disk_brings_no_warning),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

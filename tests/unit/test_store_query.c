@@ -1,5 +1,6 @@
 /* Queries of a store: views against numbers computed here, reading statements only, grouping, canned queries, our
  * aggregates. */
+#define CHECK_OWN_MAIN
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/statistics/statistics.h"
@@ -79,8 +80,7 @@ static double largest(const struct fixture_run *f) {
   return f->outcome.largest_fraction;
 }
 
-static void points_have_mean_scatter_and_interval(void **state) {
-  (void)state;
+TEST(points_have_mean_scatter_and_interval) {
   struct store *store = reader();
   double sd, mean = two_pass(largest, 7, 1, 1, &sd);
   char sql[300];
@@ -99,8 +99,7 @@ static void points_have_mean_scatter_and_interval(void **state) {
 
 /* The quantile of Student's t in plain SQL against that in C, which is GSL's: exact to ten degrees, then within 5e-6
  * (the first term left out of Cornish & Fisher's expansion). */
-static void student_is_students(void **state) {
-  (void)state;
+TEST(student_is_students) {
   struct store *store = reader();
   for (int degrees = 1; degrees <= 300; degrees += degrees < 40 ? 1 : 37) {
     char *sql = NULL, number_text[16];
@@ -119,8 +118,7 @@ static void student_is_students(void **state) {
 }
 
 /* The interval of a mean in plain SQL against that in C, of shares and of results that end elsewhere or nowhere. */
-static void interval_is_that_in_c(void **state) {
-  (void)state;
+TEST(interval_is_that_in_c) {
   enum { RANGES = 4 };
   static const struct sample_range ranges[RANGES] = {{-HUGE_VAL, HUGE_VAL, false},
                                                      {0, 1, true},
@@ -167,8 +165,7 @@ static void interval_is_that_in_c(void **state) {
   store_close(store, NULL);
 }
 
-static void spread_of_equal_values_is_zero(void **state) {
-  (void)state;
+TEST(spread_of_equal_values_is_zero) {
   struct store *store = reader(); /* every run has FIXTURE_FRAGMENTS fragments */
   assert_near(number(store, "SELECT max(fragment_count_sd) FROM points"), 0, 0);
   assert_near(number(store, "SELECT count(fragment_count_hw95) FROM points"), 0, 0); /* no +- 0 */
@@ -177,8 +174,7 @@ static void spread_of_equal_values_is_zero(void **state) {
 }
 
 /* Deviations whose squares no double holds: SQL has no standard deviation and no interval of them. */
-static void squares_beyond_double_are_withheld(void **state) {
-  (void)state;
+TEST(squares_beyond_double_are_withheld) {
   static const char *const factors[] = {"1e-170", "1e170", "1"};
   char path[64];
   for (size_t k = 0; k < 3; k++) {
@@ -202,8 +198,7 @@ static void squares_beyond_double_are_withheld(void **state) {
 }
 
 /* Exponents of runs that differ by 1e-9 scatter by 1e-9: nothing cancels. */
-static void scatter_of_exponents(void **state) {
-  (void)state;
+TEST(scatter_of_exponents) {
   char path[64];
   struct store *store = NULL;
   sqlite3 *db = NULL;
@@ -227,8 +222,7 @@ static void scatter_of_exponents(void **state) {
   fixture_path(path, "near");
 }
 
-static void spectra_are_densities(void **state) {
-  (void)state;
+TEST(spectra_are_densities) {
   struct store *store = reader();
   assert_near(number(store, "SELECT sum(density * (upper - lower)) FROM spectra WHERE point_id = 3"), 1, 1e-12);
   assert_near(number(store, "SELECT sum(count) FROM spectra WHERE point_id = 3"), RUNS * FIXTURE_FRAGMENTS, 0);
@@ -244,8 +238,7 @@ static void spectra_are_densities(void **state) {
 }
 
 /* Points are the units of a group that pools over an input; the runs are the units of a point. */
-static void groups_say_what_they_pool(void **state) {
-  (void)state;
+TEST(groups_say_what_they_pool) {
   struct ask_group_pooled pooled;
   struct store *store = reader();
   struct rows rows = {.count = 0};
@@ -302,8 +295,7 @@ static void groups_say_what_they_pool(void **state) {
   store_close(store, NULL);
 }
 
-static void only_reading_is_allowed(void **state) {
-  (void)state;
+TEST(only_reading_is_allowed) {
   struct store *store = reader();
   struct rows rows;
   const char *const refused[] = {"DELETE FROM run",
@@ -342,8 +334,7 @@ static void only_reading_is_allowed(void **state) {
   store_close(store, NULL);
 }
 
-static void time_limit_stops(void **state) {
-  (void)state;
+TEST(time_limit_stops) {
   struct store *store = reader();
   struct rows rows;
   assert_int_equal(keep(answer_to_user(store,
@@ -365,8 +356,7 @@ static void time_limit_stops(void **state) {
   store_close(store, NULL);
 }
 
-static void every_canned_query_runs(void **state) {
-  (void)state;
+TEST(every_canned_query_runs) {
   struct store *store = reader();
   struct rows rows = {.count = 0};
   assert_true(ask_canned_count() >= 10);
@@ -396,8 +386,7 @@ static void every_canned_query_runs(void **state) {
   store_close(store, NULL);
 }
 
-static void our_aggregates(void **state) {
-  (void)state;
+TEST(our_aggregates) {
   struct store *store = reader();
   struct rows rows;
   assert_int_equal(ask(store, "SELECT median(1)", &rows), STATUS_USAGE); /* not before they are registered */
@@ -412,8 +401,7 @@ static void our_aggregates(void **state) {
   store_close(store, NULL);
 }
 
-static void parameters_are_bound(void **state) {
-  (void)state;
+TEST(parameters_are_bound) {
   struct store *store = reader();
   const struct query_parameter two[] = {{"a", "3"}, {"b", "0.5"}};
   const struct query_parameter text = {"a", "x'; DROP"};
@@ -427,8 +415,7 @@ static void parameters_are_bound(void **state) {
 }
 
 /* Answers nest, may be left early, and say nothing after their end. No statement stays open. */
-static void answers_close_themselves(void **state) {
-  (void)state;
+TEST(answers_close_themselves) {
   struct store *store = reader();
   {
     ANSWER points = answer_to(store, &error, "SELECT point_id FROM point ORDER BY point_id");
@@ -462,8 +449,7 @@ static void answers_close_themselves(void **state) {
 
 /* A program without the row fidelity.grains computes a campaign; then the program with it computes the same one again:
  * other identities, the same seeds. Points that differ in a value, or share no seed, are no twins. */
-static void the_same_seeds_are_seen(void **state) {
-  (void)state;
+TEST(the_same_seeds_are_seen) {
   char path[64];
   struct store *store = NULL;
   struct ask_group_twins twins;
@@ -524,22 +510,5 @@ static void the_same_seeds_are_seen(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points_have_mean_scatter_and_interval),
-      cmocka_unit_test(student_is_students),
-      cmocka_unit_test(interval_is_that_in_c),
-      cmocka_unit_test(spread_of_equal_values_is_zero),
-      cmocka_unit_test(squares_beyond_double_are_withheld),
-      cmocka_unit_test(scatter_of_exponents),
-      cmocka_unit_test(spectra_are_densities),
-      cmocka_unit_test(groups_say_what_they_pool),
-      cmocka_unit_test(the_same_seeds_are_seen),
-      cmocka_unit_test(only_reading_is_allowed),
-      cmocka_unit_test(time_limit_stops),
-      cmocka_unit_test(every_canned_query_runs),
-      cmocka_unit_test(answers_close_themselves),
-      cmocka_unit_test(our_aggregates),
-      cmocka_unit_test(parameters_are_bound),
-  };
-  return cmocka_run_group_tests(tests, forget, NULL);
+  return check_run(forget, NULL);
 }

@@ -46,8 +46,7 @@ static void populate(const char *path) {
   OK(store_close(store, &error));
 }
 
-static void identities_follow_from_the_scenes(void **state) {
-  (void)state;
+TEST(identities_follow_from_the_scenes) {
   char path[64], problems[4000] = "";
   struct store *store = NULL;
   assert_true(scene_builtin_count() > 0);
@@ -62,8 +61,7 @@ static void identities_follow_from_the_scenes(void **state) {
   store_close(store, NULL);
 }
 
-static void a_changed_seed_or_scene_is_found(void **state) {
-  (void)state;
+TEST(a_changed_seed_or_scene_is_found) {
   static const char *const damages[] =
       {"UPDATE run SET seed = seed + 1 WHERE run_id = 1", "UPDATE run SET identity = randomblob(16) WHERE run_id = 1",
        "UPDATE point SET scene = '{\"engine\": \"dem\", \"nonsense\": 1}' WHERE point_id = 1"};
@@ -84,8 +82,7 @@ static void a_changed_seed_or_scene_is_found(void **state) {
 
 /* A share above 1 is found in common results and in an engine's own results. Runs that do not count and runs of another
  * version are not checked. */
-static void results_out_of_range_are_found(void **state) {
-  (void)state;
+TEST(results_out_of_range_are_found) {
   static const struct {
     const char *damage, *word; /* NULL: no message of that kind */
   } cases[] = {
@@ -113,11 +110,4 @@ static void results_out_of_range_are_found(void **state) {
       fail_msg("%s: said '%s'", cases[i].damage, problems);
     store_close(store, NULL);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(identities_follow_from_the_scenes),
-                                     cmocka_unit_test(a_changed_seed_or_scene_is_found),
-                                     cmocka_unit_test(results_out_of_range_are_found)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* schemas/results.sql is the schema of a store, every column of it is documented, and the names in our SQL text are
  * those of the field tables. `test_store_schema print` prints the schema: the build target schemas writes the file with
  * it. */
+#define CHECK_OWN_MAIN
 #include <sqlite3.h>
 
 #include "db/store/schema.h"
@@ -67,8 +68,7 @@ static char *schema_text(void) {
   return text;
 }
 
-static void committed_text_is_the_schema(void **state) {
-  (void)state;
+TEST(committed_text_is_the_schema) {
   static const char path[] = CLAST_SOURCE_DIR "/schemas/results.sql";
   char *made = schema_text();
   assert_non_null(made);
@@ -85,8 +85,7 @@ static void committed_text_is_the_schema(void **state) {
   free(made);
 }
 
-static void text_makes_the_same_store(void **state) {
-  (void)state;
+TEST(text_makes_the_same_store) {
   char *sql = schema_text();
   sqlite3 *db = run_text(sql);
   assert_int_equal(integer(db, "ATTACH 'test-store-schema.db' AS real"), -1);
@@ -105,8 +104,7 @@ static void text_makes_the_same_store(void **state) {
   free(sql);
 }
 
-static void every_column_is_documented(void **state) {
-  (void)state;
+TEST(every_column_is_documented) {
   char *sql = schema_text();
   sqlite3 *db = run_text(sql);
   sqlite3_stmt *statement = NULL;
@@ -139,8 +137,7 @@ static void every_column_is_documented(void **state) {
   free(sql);
 }
 
-static void every_table_is_strict(void **state) {
-  (void)state;
+TEST(every_table_is_strict) {
   char *sql = schema_text();
   sqlite3 *db = run_text(sql);
   assert_int_equal(
@@ -153,8 +150,7 @@ static void every_table_is_strict(void **state) {
 }
 
 /* Main results are numbers in every run that counts, and the states that SQL text names are those of outcome_table. */
-static void names_are_those_of_the_tables(void **state) {
-  (void)state;
+TEST(names_are_those_of_the_tables) {
   const struct field *row;
   assert_non_null(outcome_main(0));
   for (size_t i = 0; (row = outcome_main(i)); i++) {
@@ -169,8 +165,7 @@ static void names_are_those_of_the_tables(void **state) {
 }
 
 /* All rows of all tables, the results of every engine and module among them. */
-static void every_column_has_a_name_of_its_own(void **state) {
-  (void)state;
+TEST(every_column_has_a_name_of_its_own) {
   for (size_t i = 0; i < schema_table_count(); i++) {
     const struct schema_table table = schema_table_at(i);
     if (schema_check_names(&table, &error) != STATUS_OK)
@@ -190,8 +185,7 @@ static void differ(const struct field_table *inputs, const struct field_table *r
 }
 
 /* An input that a campaign varies has a column beside the results. */
-static void no_input_has_the_column_of_a_result(void **state) {
-  (void)state;
+TEST(no_input_has_the_column_of_a_result) {
   for (size_t i = 0; i < engine_count(); i++) {
     differ(engine_at(i)->inputs, &outcome_table);
     differ(engine_at(i)->inputs, engine_at(i)->results);
@@ -199,8 +193,7 @@ static void no_input_has_the_column_of_a_result(void **state) {
 }
 
 /* SQL treats A and a as the same name: Tillotson's law has both. */
-static void inputs_that_differ_by_case_get_two_columns(void **state) {
-  (void)state;
+TEST(inputs_that_differ_by_case_get_two_columns) {
   static const char *const paths[] = {"target.material.tillotson.A", "target.material.tillotson.a"};
   const struct field_table *inputs = engine_find("sph", &error)->inputs;
   char path[64];
@@ -215,8 +208,7 @@ static void inputs_that_differ_by_case_get_two_columns(void **state) {
   sqlite3_close(db);
 }
 
-static void one_column_of_two_rows_is_refused(void **state) {
-  (void)state;
+TEST(one_column_of_two_rows_is_refused) {
   static const struct field rows[] = {{.path = "largest.speed"}, {.path = "mass"}, {.path = "largest_speed"}};
   static const struct field_table fields = {.rows = rows, .count = 3};
   static const struct schema_column columns[] = {{.name = "run_id"}, {.name = "Mass"}};
@@ -229,8 +221,7 @@ static void one_column_of_two_rows_is_refused(void **state) {
   assert_non_null(strstr(error.message, "'Mass' and 'mass'"));
 }
 
-static void canned_queries_know_the_real_columns(void **state) {
-  (void)state;
+TEST(canned_queries_know_the_real_columns) {
   struct store *store = NULL;
   assert_int_equal(store_open_reader("test-store-schema.db", &store, &error), STATUS_OK);
   for (size_t i = 0; i < ask_canned_count(); i++) {
@@ -252,17 +243,5 @@ int main(int count, char **arguments) {
     free(text);
     return 0;
   }
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(committed_text_is_the_schema),
-      cmocka_unit_test(text_makes_the_same_store),
-      cmocka_unit_test(every_column_is_documented),
-      cmocka_unit_test(every_table_is_strict),
-      cmocka_unit_test(names_are_those_of_the_tables),
-      cmocka_unit_test(canned_queries_know_the_real_columns),
-      cmocka_unit_test(every_column_has_a_name_of_its_own),
-      cmocka_unit_test(no_input_has_the_column_of_a_result),
-      cmocka_unit_test(inputs_that_differ_by_case_get_two_columns),
-      cmocka_unit_test(one_column_of_two_rows_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return check_run(NULL, NULL);
 }

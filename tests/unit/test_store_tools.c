@@ -23,8 +23,7 @@ static void line(void *context, const char *text) {
   snprintf((char *)context + used, 4000 - used, "%s\n", text);
 }
 
-static void dumps_agree_whatever_the_order(void **state) {
-  (void)state;
+TEST(dumps_agree_whatever_the_order) {
   char a[64], b[64];
   populated(a, "dump-a", 2, 2, 10, false);
   populated(b, "dump-b", 2, 2, 10, true);
@@ -56,8 +55,7 @@ static void dumps_agree_whatever_the_order(void **state) {
   free(y);
 }
 
-static void points_view_has_the_same_bits(void **state) {
-  (void)state;
+TEST(points_view_has_the_same_bits) {
   char a[64], b[64];
   populated(a, "bits-a", 2, 2, 40, false);
   populated(b, "bits-b", 2, 2, 40, true);
@@ -74,8 +72,7 @@ static void points_view_has_the_same_bits(void **state) {
   store_close(two, NULL);
 }
 
-static void merge_takes_what_is_missing(void **state) {
-  (void)state;
+TEST(merge_takes_what_is_missing) {
   char a[64], b[64], whole[64];
   int64_t added = 0, differing = -1;
   populated(a, "merge-a", 1, 2, 12, false); /* m = 6 only, 12 replicates */
@@ -136,8 +133,7 @@ static void merge_takes_what_is_missing(void **state) {
 
 /* Runs of both stores: their fields file is taken only if ours cannot be read and theirs can; its path then leads from
  * our folder to theirs. */
-static void merge_takes_paths_of_fields(void **state) {
-  (void)state;
+TEST(merge_takes_paths_of_fields) {
   enum { RUNS = 6 };
   static const char *const ours[RUNS] = {"paths-ours.h5", NULL, "paths-lost.h5", "paths-ours.h5", NULL, NULL};
   static const char *const theirs[RUNS] = {"theirs.h5", "theirs.h5", "theirs.h5", "lost.h5", "lost.h5", NULL};
@@ -208,8 +204,7 @@ static void one_point(const char *path, int64_t from, int64_t to) {
 }
 
 /* No batch, limit or page of merge is visible in what it adds, and nothing is added twice. */
-static void merge_takes_any_number_of_runs(void **state) {
-  (void)state;
+TEST(merge_takes_any_number_of_runs) {
   static const int64_t counts[] = {1, 1000, 1001, 2001};
   char target[64], source[64], whole[64];
   for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
@@ -238,8 +233,7 @@ static void merge_takes_any_number_of_runs(void **state) {
   }
 }
 
-static void check_finds(void **state) {
-  (void)state;
+TEST(check_finds) {
   static const struct {
     const char *damage, *word;
   } faults[] = {
@@ -309,8 +303,7 @@ static void check_finds(void **state) {
   }
 }
 
-static void export_is_whole_and_single(void **state) {
-  (void)state;
+TEST(export_is_whole_and_single) {
   char path[64], copy[96];
   populated(path, "export", 1, 1, 5, false);
   snprintf(copy, sizeof copy, "%s.out", path);
@@ -326,17 +319,4 @@ static void export_is_whole_and_single(void **state) {
   free(x);
   free(y);
   fixture_path(path, "export"); /* removes both files */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(dumps_agree_whatever_the_order),
-      cmocka_unit_test(points_view_has_the_same_bits),
-      cmocka_unit_test(merge_takes_what_is_missing),
-      cmocka_unit_test(merge_takes_paths_of_fields),
-      cmocka_unit_test(check_finds),
-      cmocka_unit_test(merge_takes_any_number_of_runs),
-      cmocka_unit_test(export_is_whole_and_single),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@ static struct store *writer(const char *path) {
   return store;
 }
 
-static void every_value_comes_back(void **state) {
-  (void)state;
+TEST(every_value_comes_back) {
   char path[64];
   struct store *store = writer(fixture_path(path, "values"));
   struct fixture_inputs inputs;
@@ -66,8 +65,7 @@ static void every_value_comes_back(void **state) {
 }
 
 /* In a graded body thousands of coarse single particles can be heavier than the lightest fragment that is measured. */
-static void lengths_behind_many_fragments(void **state) {
-  (void)state;
+TEST(lengths_behind_many_fragments) {
   enum { MANY = 5000 };
   static struct fragment fragments[MANY];
   struct fixture_run f;
@@ -91,8 +89,7 @@ static void lengths_behind_many_fragments(void **state) {
   OK(store_close(store, &error));
 }
 
-static void same_run_is_stored_once(void **state) {
-  (void)state;
+TEST(same_run_is_stored_once) {
   char path[64];
   struct store *store = writer(fixture_path(path, "once"));
   OK(fixture_populate(store, 1, 1, 20, false, &error));
@@ -108,8 +105,7 @@ static void same_run_is_stored_once(void **state) {
   OK(store_close(store, &error));
 }
 
-static void a_full_disk_takes_no_campaign(void **state) {
-  (void)state;
+TEST(a_full_disk_takes_no_campaign) {
   char path[64];
   static char document[1 << 20];
   struct store *store = writer(fixture_path(path, "full"));
@@ -120,8 +116,7 @@ static void a_full_disk_takes_no_campaign(void **state) {
   store_close(store, NULL);
 }
 
-static void batches_commit_by_count_and_close(void **state) {
-  (void)state;
+TEST(batches_commit_by_count_and_close) {
   char path[64];
   struct store *store = writer(fixture_path(path, "batch")), *reader = NULL;
   struct fixture_inputs inputs;
@@ -159,8 +154,7 @@ static void batches_commit_by_count_and_close(void **state) {
   assert_int_not_equal(access(log, F_OK), 0); /* a clean end leaves one file */
 }
 
-static void sums_are_those_of_the_rows(void **state) {
-  (void)state;
+TEST(sums_are_those_of_the_rows) {
   char path[64];
   struct store *store = writer(fixture_path(path, "sums"));
   OK(fixture_populate(store, 2, 3, 30, true, &error));
@@ -183,8 +177,7 @@ static void sums_are_those_of_the_rows(void **state) {
   OK(store_close(store, &error));
 }
 
-static void failed_and_censored_are_counted_apart(void **state) {
-  (void)state;
+TEST(failed_and_censored_are_counted_apart) {
   char path[64];
   struct store *store = writer(fixture_path(path, "failed"));
   struct fixture_inputs inputs;
@@ -263,8 +256,7 @@ static int sum_runs(struct store *store, int64_t point, const struct field *row,
   return count;
 }
 
-static void runs_of_a_point_in_order(void **state) {
-  (void)state;
+TEST(runs_of_a_point_in_order) {
   char path[64];
   struct store *store = writer(fixture_path(path, "point"));
   OK(fixture_populate(store, 1, 2, 10, true, &error));
@@ -285,8 +277,7 @@ static void runs_of_a_point_in_order(void **state) {
   store_close(store, NULL);
 }
 
-static void estimates_are_replaced(void **state) {
-  (void)state;
+TEST(estimates_are_replaced) {
   char path[64];
   struct store *store = writer(fixture_path(path, "estimates"));
   OK(fixture_populate(store, 1, 1, 3, false, &error));
@@ -298,19 +289,4 @@ static void estimates_are_replaced(void **state) {
   assert_near(number(store, "SELECT beta FROM estimates WHERE run_id IS NULL"), 4, 0);
   assert_near(number(store, "SELECT count(*) FROM estimates"), 7, 0);
   OK(store_close(store, &error));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_value_comes_back),
-      cmocka_unit_test(lengths_behind_many_fragments),
-      cmocka_unit_test(same_run_is_stored_once),
-      cmocka_unit_test(a_full_disk_takes_no_campaign),
-      cmocka_unit_test(batches_commit_by_count_and_close),
-      cmocka_unit_test(sums_are_those_of_the_rows),
-      cmocka_unit_test(failed_and_censored_are_counted_apart),
-      cmocka_unit_test(runs_of_a_point_in_order),
-      cmocka_unit_test(estimates_are_replaced),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,15 +26,13 @@ static char *print_rows(enum table_format format, int rows) {
   return text;
 }
 
-static void test_csv(void **state) {
-  (void)state;
+TEST(test_csv) {
   char *text = print_rows(TABLE_CSV, 2);
   assert_string_equal(text, "name,speed,n\n\"a \"\"b\"\", c\",0.1,0\nplain,,-1\n");
   free(text);
 }
 
-static void test_json(void **state) {
-  (void)state;
+TEST(test_json) {
   char *text = print_rows(TABLE_JSON, 2);
   assert_string_equal(text, "[\n {\"name\": \"a \\\"b\\\", c\", \"speed\": 0.1, \"n\": 0},\n"
                             " {\"name\": \"plain\", \"speed\": null, \"n\": -1}\n]\n");
@@ -44,8 +42,7 @@ static void test_json(void **state) {
   free(text);
 }
 
-static void test_text(void **state) {
-  (void)state;
+TEST(test_text) {
   char *text = print_rows(TABLE_TEXT, 2);
   assert_string_equal(text, "name      speed [m/s]   n\n"
                             "a \"b\", c          0.1   0\n"
@@ -62,8 +59,7 @@ static void test_text(void **state) {
 }
 
 /* The half width stands in the cell of its value, which leaves its range for nobody; a rare column is hidden. */
-static void test_half_widths(void **state) {
-  (void)state;
+TEST(test_half_widths) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
@@ -84,8 +80,7 @@ static void test_half_widths(void **state) {
 }
 
 /* The ends of an interval stand in the cell of its value, with the mark; programs see three columns. */
-static void test_intervals(void **state) {
-  (void)state;
+TEST(test_intervals) {
   static const char *const expected[] = {"             value\n0.4 (0.2 to 0.8) !\n         2\xc3\x97"
                                          "10^33\n               -\n",
                                          "value,low,high\n0.42,0.161,0.806\n2e+33,,\n,,\n"};
@@ -107,8 +102,7 @@ static void test_intervals(void **state) {
 }
 
 /* A table for people cannot control the terminal: neither its cells nor its names and units. */
-static void test_text_is_harmless(void **state) {
-  (void)state;
+TEST(test_text_is_harmless) {
   static const char *const hostile[] = {"a\x1b[2J\x07", "b\x08\x7f", "\xc2\x9b\x9b\xc3\xa9", "\r\n\t"};
   char *text = NULL;
   size_t size = 0;
@@ -133,8 +127,7 @@ static void test_text_is_harmless(void **state) {
 }
 
 /* CSV neither controls the terminal nor runs in a spreadsheet, and our reader gets the texts back. */
-static void test_csv_is_harmless(void **state) {
-  (void)state;
+TEST(test_csv_is_harmless) {
   static const struct {
     const char *text, *cell;
   } cases[] = {
@@ -176,8 +169,7 @@ static void test_csv_is_harmless(void **state) {
   }
 }
 
-static void test_numbers_round_trip(void **state) {
-  (void)state;
+TEST(test_numbers_round_trip) {
   static const double numbers[] = {0.1, 1.0 / 3, 1e300, 5e-324, -0.0, 123456789.123456789, 2.0000000000000004};
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
     char *text = NULL;
@@ -194,8 +186,7 @@ static void test_numbers_round_trip(void **state) {
   }
 }
 
-static void test_strings(void **state) {
-  (void)state;
+TEST(test_strings) {
   static const struct {
     const char *text, *json;
   } cases[] = {
@@ -220,8 +211,7 @@ static void test_strings(void **state) {
   }
 }
 
-static void test_full_disk(void **state) {
-  (void)state;
+TEST(test_full_disk) {
   FILE *out = fopen("/dev/full", "w");
   assert_non_null(out);
   TABLE table = table_new(TABLE_CSV, out);
@@ -233,20 +223,4 @@ static void test_full_disk(void **state) {
   assert_int_equal(table_end(table, &error), STATUS_IO);
   assert_non_null(strstr(error.message, "No space"));
   fclose(out);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_csv),
-      cmocka_unit_test(test_json),
-      cmocka_unit_test(test_text),
-      cmocka_unit_test(test_half_widths),
-      cmocka_unit_test(test_intervals),
-      cmocka_unit_test(test_text_is_harmless),
-      cmocka_unit_test(test_csv_is_harmless),
-      cmocka_unit_test(test_numbers_round_trip),
-      cmocka_unit_test(test_strings),
-      cmocka_unit_test(test_full_disk),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -132,8 +132,7 @@ static void compare(const struct dem_tessellation *t, const struct oracle *o, ui
   free(cell_of);
 }
 
-static void block_equals_qhull(void **state) {
-  (void)state;
+TEST(block_equals_qhull) {
   const uint32_t sizes[][2] = {{1, 2}, {3, 3}, {12, 7}, {40, 25}};
   const double disorders[] = {0, 1e-3, 0.3, 0.7, 1};
   for (size_t s = 0; s < 4; s++)
@@ -179,8 +178,7 @@ static void block_equals_qhull(void **state) {
       }
 }
 
-static void disc_equals_qhull(void **state) {
-  (void)state;
+TEST(disc_equals_qhull) {
   const double radii[] = {0.8, 4.3, 18.7}, disorders[] = {0, 0.5, 1};
   for (size_t r = 0; r < 3; r++)
     for (size_t d = 0; d < 3; d++)
@@ -216,8 +214,7 @@ static void disc_equals_qhull(void **state) {
       }
 }
 
-static void neighbours_share_vertices(void **state) {
-  (void)state;
+TEST(neighbours_share_vertices) {
   /* also nearly square lattices: their corners lie nearer to each other than rounding can resolve */
   const double disorders[] = {1, 0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11};
   for (uint64_t seed = 0; seed < 35; seed++) {
@@ -253,8 +250,7 @@ static void neighbours_share_vertices(void **state) {
   }
 }
 
-static void no_disorder_is_the_square_lattice(void **state) {
-  (void)state;
+TEST(no_disorder_is_the_square_lattice) {
   struct dem_lattice lattice = {.outline = DEM_OUTLINE_BLOCK, .spacing = 0.5, .columns = 9, .rows = 7, .seed = 1};
   struct dem_tessellation *t;
   assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
@@ -270,8 +266,7 @@ static void no_disorder_is_the_square_lattice(void **state) {
   dem_tessellation_free(t);
 }
 
-static void streams_and_seeds_differ_and_repeat(void **state) {
-  (void)state;
+TEST(streams_and_seeds_differ_and_repeat) {
   struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 0.01, .disorder = 1, .radius = 0.1, .seed = 5};
   struct dem_tessellation *a, *b, *joined;
   assert_int_equal(dem_tessellation_make(&lattice, &a, NULL), STATUS_OK);
@@ -298,8 +293,7 @@ static void streams_and_seeds_differ_and_repeat(void **state) {
 
 /* A larger disc of the same seed holds the smaller one's grains: those whose centroids lie within its radius, all of
  * them, and no others. */
-static void a_larger_disc_holds_the_smaller_one(void **state) {
-  (void)state;
+TEST(a_larger_disc_holds_the_smaller_one) {
   for (uint64_t seed = 0; seed < 100; seed++) {
     struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC,
                                   .spacing = 0.5,
@@ -363,8 +357,7 @@ static bool covered(const struct dem_tessellation *t, double x, double y) {
 /* A ring is the cells of the disc between two circles. From a wall of two spacings on it is one body without a gap; at
  * 1.75 spacings 12 of 100 rings have one. The inner side is as rough as the outer one: 0.31 spacings, root mean square.
  */
-static void rings_are_whole(void **state) {
-  (void)state;
+TEST(rings_are_whole) {
   enum { SEEDS = 100, ROUGH = 5, ANGLES = 360 };
   const double walls[] = {2, 5}, radius = 12.3;
   for (size_t w = 0; w < sizeof walls / sizeof *walls; w++) {
@@ -412,8 +405,7 @@ static void rings_are_whole(void **state) {
   }
 }
 
-static void ten_thousand_cells_in_time(void **state) {
-  (void)state;
+TEST(ten_thousand_cells_in_time) {
   double best = HUGE_VAL;
   for (int i = 0; i < 5; i++) {
     struct dem_lattice lattice =
@@ -429,8 +421,7 @@ static void ten_thousand_cells_in_time(void **state) {
   assert_true(best < 1);
 }
 
-static void nonsense_is_refused(void **state) {
-  (void)state;
+TEST(nonsense_is_refused) {
   struct dem_tessellation *t;
   struct error error = {0};
   struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 1e-9, .disorder = 1, .radius = 1};
@@ -442,17 +433,4 @@ static void nonsense_is_refused(void **state) {
   lattice = (struct dem_lattice){.outline = DEM_OUTLINE_BLOCK, .spacing = 1, .disorder = 1, .rows = 5};
   assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_CONTENT);
   dem_tessellation_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(block_equals_qhull),
-                                     cmocka_unit_test(disc_equals_qhull),
-                                     cmocka_unit_test(neighbours_share_vertices),
-                                     cmocka_unit_test(no_disorder_is_the_square_lattice),
-                                     cmocka_unit_test(streams_and_seeds_differ_and_repeat),
-                                     cmocka_unit_test(a_larger_disc_holds_the_smaller_one),
-                                     cmocka_unit_test(rings_are_whole),
-                                     cmocka_unit_test(ten_thousand_cells_in_time),
-                                     cmocka_unit_test(nonsense_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

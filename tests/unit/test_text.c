@@ -7,8 +7,7 @@
 #include "tests/support/check.h"
 
 /* What does not fit is cut, whatever is appended later, and the bytes behind the array stay as they are. */
-static void test_append_stays_in_its_array(void **state) {
-  (void)state;
+TEST(test_append_stays_in_its_array) {
   char text[8] = "", behind[8] = "behind!";
   assert_true(text_append(text, sizeof text, "%s", "1234567"));
   assert_false(text_append(text, sizeof text, "%.3f", 1e308));
@@ -23,8 +22,7 @@ static void test_append_stays_in_its_array(void **state) {
 }
 
 /* Characters of 2, 3 and 4 bytes are cut as a whole; a character that fits stays. */
-static void test_append_cuts_whole_characters(void **state) {
-  (void)state;
+TEST(test_append_cuts_whole_characters) {
   static const char *const characters[] = {"\xc2\xb1", "\xe2\x94\x81", "\xf0\x9f\x98\x80"};
   for (size_t i = 0; i < 3; i++) {
     const size_t length = strlen(characters[i]);
@@ -37,8 +35,7 @@ static void test_append_cuts_whole_characters(void **state) {
   }
 }
 
-static void test_fixed_has_few_digits(void **state) {
-  (void)state;
+TEST(test_fixed_has_few_digits) {
   static const struct {
     double number;
     const char *text;
@@ -51,8 +48,7 @@ static void test_fixed_has_few_digits(void **state) {
   }
 }
 
-static void test_percent(void **state) {
-  (void)state;
+TEST(test_percent) {
   static const struct {
     double share;
     const char *text;
@@ -71,16 +67,14 @@ static void assert_wrapped(const char *text, size_t width, const char *lines) {
   free(wrapped);
 }
 
-static void test_wrap_keeps_numbers_and_commands(void **state) {
-  (void)state;
+TEST(test_wrap_keeps_numbers_and_commands) {
   assert_wrapped("the last at (4 660 000 Pa)", 18, "the last at\n(4 660 000 Pa)\n");
   assert_wrapped("next: (`clast run a.yaml`), then go", 20, "next:\n(`clast run a.yaml`),\nthen go\n");
   assert_wrapped("as `clast\n    run a.yaml` says", 20, "as\n`clast run a.yaml`\nsays\n");
   assert_wrapped("`a b` `c d` an odd ` of one", 9, "`a b`\n`c d` an\nodd ` of\none\n");
 }
 
-static void test_hexadecimal(void **state) {
-  (void)state;
+TEST(test_hexadecimal) {
   char text[9] = "--------";
   text_hex("\x00\x7f\x80\xff", 4, text);
   assert_string_equal(text, "007f80ff");
@@ -88,8 +82,7 @@ static void test_hexadecimal(void **state) {
   assert_string_equal(text, "");
 }
 
-static void test_numbers_for_people(void **state) {
-  (void)state;
+TEST(test_numbers_for_people) {
   const char *const cases[][2] = {{"E 5e+08 Pa, 1e-06 s", "E 5\xc3\x97"
                                                           "10^8 Pa, 10^-6 s"},
                                   {"3.8e+06 steps, 1e+03 grains of 1.1e+03", "3 800 000 steps, 1000 grains of 1100"},
@@ -102,17 +95,4 @@ static void test_numbers_for_people(void **state) {
     assert_string_equal(text, cases[i][1]);
     free(text);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_append_stays_in_its_array),
-      cmocka_unit_test(test_append_cuts_whole_characters),
-      cmocka_unit_test(test_fixed_has_few_digits),
-      cmocka_unit_test(test_percent),
-      cmocka_unit_test(test_hexadecimal),
-      cmocka_unit_test(test_wrap_keeps_numbers_and_commands),
-      cmocka_unit_test(test_numbers_for_people),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

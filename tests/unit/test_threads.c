@@ -31,8 +31,17 @@ static int granted_with(int64_t room, int64_t wanted) {
   return WEXITSTATUS(code);
 }
 
-static void as_many_as_wanted(void **state) {
-  (void)state;
+/* First the test that forks: the child of a process that has used OpenMP must not use it. */
+TEST(fewer_than_wanted) {
+#ifdef __SANITIZE_ADDRESS__
+  skip(); /* the sanitizer reserves address space of its own */
+#endif
+  assert_int_equal(granted_with(0, 8), 1);
+  const int some = granted_with(3, 8);
+  assert_true(some >= 1 && some <= 4);
+}
+
+TEST(as_many_as_wanted) {
   assert_int_equal(threads_granted(-1), 1);
   assert_int_equal(threads_granted(1), 1);
 #ifdef _OPENMP
@@ -43,20 +52,4 @@ static void as_many_as_wanted(void **state) {
   assert_int_equal(threads_stacks(0), 0);
   assert_true(threads_stacks(3) == 3 * threads_stacks(1));
   assert_true(threads_stacks(1) >= 1 << 14);
-}
-
-static void fewer_than_wanted(void **state) {
-  (void)state;
-#ifdef __SANITIZE_ADDRESS__
-  skip(); /* the sanitizer reserves address space of its own */
-#endif
-  assert_int_equal(granted_with(0, 8), 1);
-  const int some = granted_with(3, 8);
-  assert_true(some >= 1 && some <= 4);
-}
-
-int main(void) {
-  /* The child of a process that has used OpenMP must not use it: first the test that forks. */
-  const struct CMUnitTest tests[] = {cmocka_unit_test(fewer_than_wanted), cmocka_unit_test(as_many_as_wanted)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 #include "campaign/terminal/table.h"
 #include "tests/support/check.h"
 
-static void seeds(void **state) {
-  (void)state;
+TEST(seeds) {
   static const struct {
     struct sample_summary mean;
     const char *expected;
@@ -39,8 +38,7 @@ static void seeds(void **state) {
   }
 }
 
-static void intervals(void **state) {
-  (void)state;
+TEST(intervals) {
   static const struct {
     double value, low, high;
     const char *expected;
@@ -65,8 +63,7 @@ static void intervals(void **state) {
   }
 }
 
-static void resolution(void **state) {
-  (void)state;
+TEST(resolution) {
   char text[UNCERTAINTY_TEXT];
   struct ask_resolution found;
   assert_int_equal(ask_resolution(NULL, 0, "largest_fraction", &found, NULL), STATUS_OK);
@@ -110,8 +107,7 @@ static void resolution(void **state) {
                             "particles, time_step)");
 }
 
-static void cells(void **state) {
-  (void)state;
+TEST(cells) {
   static const struct {
     const char *verdict, *expected;
   } cases[] = {{"known", "0.061"},
@@ -124,10 +120,4 @@ static void cells(void **state) {
     uncertainty_resolution_cell(ask_resolution_verdict(cases[i].verdict), 0.0612, text);
     assert_string_equal(text, cases[i].expected);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(seeds), cmocka_unit_test(intervals), cmocka_unit_test(resolution),
-                                     cmocka_unit_test(cells)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

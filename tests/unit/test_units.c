@@ -8,8 +8,7 @@
 #include "schemas/unit.h"
 #include "tests/support/check.h"
 
-static void values_are_exact(void **state) {
-  (void)state;
+TEST(values_are_exact) {
   int wrong = 0;
   /* The doubles on the right are the compiler's own reading of the decimal number: equality, no tolerance. */
   static const struct {
@@ -89,23 +88,20 @@ static void values_are_exact(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-static void the_unit_of_a_text(void **state) {
-  (void)state;
+TEST(the_unit_of_a_text) {
   assert_string_equal(unit_of("5 km/s"), "km/s");
   assert_string_equal(unit_of(" 3%"), "%");
   assert_string_equal(unit_of("-2.5e3"), "");
   assert_string_equal(unit_of("off"), "");
 }
 
-static void degrees_are_near(void **state) {
-  (void)state;
+TEST(degrees_are_near) {
   double si;
   assert_int_equal(unit_read("4 deg", "rad", &si, NULL), STATUS_OK);
   assert_true(fabs(si - 4 * M_PI / 180) < 2e-17); /* two roundings of a value near 0.07 */
 }
 
-static void messages_are_these(void **state) {
-  (void)state;
+TEST(messages_are_these) {
   int wrong = 0;
   static const struct {
     const char *text, *unit, *message;
@@ -177,8 +173,7 @@ static void messages_are_these(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-static void limits_hold(void **state) {
-  (void)state;
+TEST(limits_hold) {
   char text[2000];
   double si;
   memset(text, '1', sizeof text);
@@ -197,8 +192,7 @@ static void limits_hold(void **state) {
   assert_int_equal(unit_parse(text, &unit, NULL), STATUS_CONTENT);
 }
 
-static void factors_are_si(void **state) {
-  (void)state;
+TEST(factors_are_si) {
   struct unit a, b;
   assert_int_equal(unit_parse("km/h", &a, NULL), STATUS_OK);
   assert_true(fabs(a.factor - 1 / 3.6) < 1e-16); /* one rounding each side */
@@ -211,8 +205,7 @@ static void factors_are_si(void **state) {
 }
 
 /* Any double printed comes back as the same double, also through a unit of a power of ten. */
-static void numbers_round_trip(void **state) {
-  (void)state;
+TEST(numbers_round_trip) {
   uint64_t word = 88172645463325252u; /* xorshift64, Marsaglia 2003 */
   for (int i = 0; i < 20000; i++) {
     word ^= word << 13;
@@ -236,13 +229,4 @@ static void numbers_round_trip(void **state) {
     field_print_number(strtod(shown[i], NULL), text);
     assert_string_equal(text, shown[i]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(values_are_exact),   cmocka_unit_test(degrees_are_near), cmocka_unit_test(the_unit_of_a_text),
-      cmocka_unit_test(messages_are_these), cmocka_unit_test(limits_hold),      cmocka_unit_test(factors_are_si),
-      cmocka_unit_test(numbers_round_trip),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

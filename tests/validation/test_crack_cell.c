@@ -4,8 +4,7 @@
  * Quick: 3000 and 12 000 particles at 60 /s. CLAST_FULL=1: 3000 to 150 000 at 60 and 360 /s. */
 #include "tests/validation/rod_strength.h"
 
-static void strength_depends_on_the_cell(void **state) {
-  (void)state;
+TEST(strength_depends_on_the_cell) {
   static const int particles[] = {3000, 12000, 50000, 150000};
   const int count = run_case_full() ? 4 : 2;
   assert_true(rod_strength_spread("fracture.cell=2 mm", "60 1/s", "18 us", count, particles) < 0.05);
@@ -13,9 +12,4 @@ static void strength_depends_on_the_cell(void **state) {
   assert_true(rod_strength_spread("fracture.cell=0 m", "60 1/s", "18 us", count, particles) > 0.1);
   if (run_case_full())
     assert_true(rod_strength_spread("fracture.cell=2 mm", "360 1/s", "4 us", count, particles) < 0.05);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(strength_depends_on_the_cell)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
  * Quick: 3000 and 12 000 particles at 60 /s. CLAST_FULL=1: 12 000, 50 000 and 150 000 at 60 and 360 /s. */
 #include "tests/validation/rod_strength.h"
 
-static void strength_does_not_grow(void **state) {
-  (void)state;
+TEST(strength_does_not_grow) {
   static const int quick[] = {3000, 12000}, full[] = {12000, 50000, 150000};
   const int *particles = run_case_full() ? full : quick, count = run_case_full() ? 3 : 2;
   assert_true(rod_strength_spread("fracture.front=plane", "60 1/s", "12 us", count, particles) < 0.05);
@@ -13,9 +12,4 @@ static void strength_does_not_grow(void **state) {
   assert_true(rod_strength_spread("fracture.front=none", "60 1/s", "18 us", count, particles) > 0.1);
   if (run_case_full())
     assert_true(rod_strength_spread("fracture.front=plane", "360 1/s", "4 us", count, particles) < 0.05);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(strength_does_not_grow)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -75,8 +75,7 @@ static struct figures press_all(const struct dem_inputs *inputs, uint64_t bodies
   return sum;
 }
 
-static void failure_is_abrupt_and_cracks_are_upright(void **state) {
-  (void)state;
+TEST(failure_is_abrupt_and_cracks_are_upright) {
   struct dem_inputs inputs = DEM_CASE("compression", NULL);
   if (!run_case_full())
     inputs.loading.rate *= 2;
@@ -91,9 +90,4 @@ static void failure_is_abrupt_and_cracks_are_upright(void **state) {
     /* quasi-static: the strength does not depend on the rate */
     assert_true(fabs(slow.strength / f.strength - 1) < 0.1);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(failure_is_abrupt_and_cracks_are_upright)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,8 +38,7 @@ static struct moduli measure(double beam_modulus, bool extension, bool contact, 
   return (struct moduli){ran.results.dem.young_modulus, ran.results.dem.poisson_ratio};
 }
 
-static void square_lattice_is_exact(void **state) {
-  (void)state;
+TEST(square_lattice_is_exact) {
   /* Rows of aligned beams of modulus E, nothing across: K = E, nu = 0. What remains are vibrations of the start: 0.2 %.
    */
   struct moduli m = measure(5e8, true, true, 0, 1);
@@ -54,8 +53,7 @@ static void square_lattice_is_exact(void **state) {
   assert_true(fabs(m.k / expected - 1) < 1e-2); /* contacts stiffen with overlap: strain 2e-3, and vibrations */
 }
 
-static void trends(void **state) {
-  (void)state;
+TEST(trends) {
   const double e[MODULI] = {1e8, 2e8, 5e8, 1e9, 2e9, 4e9}; /* figures 5 and 6: 1e9 to 4e10 dyn/cm^2 at Y = 1e10 */
   struct moduli pulled[MODULI] = {0}, pressed[MODULI] = {0}, beams[MODULI] = {0};
   int bodies = (int)run_case_seeds(1, 3);
@@ -96,9 +94,4 @@ static void trends(void **state) {
   assert_true(pressed[0].k < 1e9);
   assert_true(fabs(pressed[5].nu - beams[5].nu) < fabs(pressed[0].nu - beams[0].nu));
   assert_true(fabs(pulled[5].nu - beams[5].nu) < fabs(pulled[0].nu - beams[0].nu));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(square_lattice_is_exact), cmocka_unit_test(trends)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -150,8 +150,7 @@ static void gate(const struct spectrum_case *c) {
               0.005); /* 30 seeds of each: at most 8e-4, most 3e-4; a stiff or unbooked contact gives 2 % and more */
 }
 
-static void explosion(void **state) {
-  (void)state;
+TEST(explosion) {
   header();
   struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL);
   struct spectrum_case c = pool("disc-explosion", &inputs, run_case_seeds(3, 30));
@@ -161,8 +160,7 @@ static void explosion(void **state) {
   assert_true(c.largest > 0.05 && c.largest < 0.3); /* it goes to pieces, not to dust */
 }
 
-static void impact(void **state) {
-  (void)state;
+TEST(impact) {
   struct dem_inputs inputs = DEM_CASE("block-impact", NULL);
   struct spectrum_case c = pool("block-impact", &inputs, run_case_seeds(5, 30));
   gate(&c);
@@ -171,8 +169,7 @@ static void impact(void **state) {
   assert_true(c.radial[8] + c.radial[9] > 1.25 * (c.radial[4] + c.radial[5]));
 }
 
-static void thresholds_and_choices(void **state) {
-  (void)state;
+TEST(thresholds_and_choices) {
   if (!run_case_full())
     return;
   const char *const cases[][2] = {
@@ -201,10 +198,4 @@ static void thresholds_and_choices(void **state) {
     snprintf(label, sizeof label, "%s%s", cases[k][0], cases[k][1] ? " (bonded)" : "");
     pool(label, &inputs, run_case_seeds(10, 10));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(explosion), cmocka_unit_test(impact),
-                                     cmocka_unit_test(thresholds_and_choices)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

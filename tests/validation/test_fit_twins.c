@@ -2,7 +2,6 @@
  * know them. The 90 % intervals must hold the inputs in about 90 of 100 cases. See fit_twins.md. */
 #include <stdio.h>
 
-#include "analysis/analysis.h"
 #include "tests/support/check.h"
 #include "tests/support/inference_cases.h"
 
@@ -114,34 +113,18 @@ static void run_both(const char *name, size_t inputs, case_model model, bool cou
   }
 }
 
-static void two_inputs(void **state) {
-  (void)state;
+TEST(two_inputs) {
   run_both("two inputs, two summaries", 2, body, false, true);
 }
 
-static void one_input(void **state) {
-  (void)state;
+TEST(one_input) {
   run_both("one input, skewed scatter", 1, skewed, false, true);
 }
 
-static void few_fragments(void **state) {
-  (void)state;
+TEST(few_fragments) {
   run_both("two inputs, a share and a small number", 2, few, true, true);
 }
 
-static void seeds_that_act_alike(void **state) {
-  (void)state;
+TEST(seeds_that_act_alike) {
   run_both("seeds that act alike", 2, alike, false, false);
-}
-
-static int start(void **state) {
-  (void)state;
-  analysis_init();
-  return 0;
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(two_inputs), cmocka_unit_test(one_input),
-                                     cmocka_unit_test(few_fragments), cmocka_unit_test(seeds_that_act_alike)};
-  return cmocka_run_group_tests(tests, start, NULL);
 }

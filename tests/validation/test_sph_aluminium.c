@@ -100,8 +100,7 @@ static struct shock shock(int speed, double spacings, bool reconstruction) {
   return s;
 }
 
-static void peak_pressures(void **state) {
-  (void)state;
+TEST(peak_pressures) {
   const char *asked = getenv("CLAST_SPACINGS");
   if (asked && run_case_full()) {
     shock(5, strtod(asked, NULL), false);
@@ -183,8 +182,7 @@ static struct hole crater(double spacings, int particles) {
   return hole;
 }
 
-static void crater_growth(void **state) {
-  (void)state;
+TEST(crater_growth) {
   if (getenv("CLAST_SPACINGS"))
     return;
   const struct hole coarse = crater(3, 10000);
@@ -194,9 +192,4 @@ static void crater_growth(void **state) {
   crater(5, 60000);
   const struct hole fine = crater(8, 60000);
   assert_true(fabs(fine.radius / 13.10e-3 - 1) < 0.13 && fabs(fine.depth / 12.95e-3 - 1) < 0.12);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(peak_pressures), cmocka_unit_test(crater_growth)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -144,8 +144,7 @@ static struct cratered crater(struct rock rock, size_t seeds) {
   return c;
 }
 
-static void speed_of_waves(void **state) {
-  (void)state;
+TEST(speed_of_waves) {
   const size_t seeds = run_case_seeds(1, 1);
   const struct cratered three = crater((struct rock){"3", "1.39e18", "damped", NULL}, seeds);
   const struct cratered nine = crater((struct rock){"9", run_case_full() ? "7e40" : "2e41", "damped", NULL}, 1);
@@ -173,9 +172,4 @@ static void speed_of_waves(void **state) {
   const struct cratered even = crater((struct rock){"3", "1.39e18", "damped", number}, seeds);
   assert_true(asked || (even.halfway > 0.048 && even.halfway < 0.056)); /* of 80 000: 5.2 cm; seeds within 0.1 */
   assert_true(even.damage[2] > 0.98 && even.speed[9] > 0.97);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(speed_of_waves)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,8 +59,7 @@ static struct result run(const char *name, uint64_t seed, const char *particles,
   return r;
 }
 
-static void ice(void **state) {
-  (void)state;
+TEST(ice) {
   const int seeds = full() ? 10 : 2;
   double sum = 0, squares = 0;
   for (int seed = 1; seed <= seeds; seed++) {
@@ -99,8 +98,7 @@ static void ice(void **state) {
   assert_true(exp(mean) < 0.67); /* less than its lower density alone (1/1.5) would give */
 }
 
-static void target(void **state) {
-  (void)state;
+TEST(target) {
   struct result r = run("porous-target", 1, full() ? "20000" : "8000", false);
   print_message("porous target: crater %.4f m deep, radius %.4f m, %.3g m^3; share of compaction %.3f; ejected %.4f "
                 "kg, %.3f kg m/s; "
@@ -114,15 +112,8 @@ static void target(void **state) {
 
 /* A deviator that crushing matter holds while strain takes from it gives back more than it took: 2e-4 of the energy
  * here, 2e-3 with the gradient correction. */
-static void crushing_makes_no_energy(void **state) {
-  (void)state;
+TEST(crushing_makes_no_energy) {
   struct result r = run("pumice-sphere", 1, "1000", false);
   assert_true(r.sph.clamped_share == 0);
   assert_true(fabs(r.outcome.energy_error) < 1e-3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(ice), cmocka_unit_test(target),
-                                     cmocka_unit_test(crushing_makes_no_energy)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

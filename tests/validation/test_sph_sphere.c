@@ -113,8 +113,7 @@ static void pinned(const char *what, double value, double expected, double toler
  * tension):
  *   3 us: +15, -32, -4, -4, 0 %     16 us: -3, +3, -5, +16, +18 %     share reached: -4, +6, -4, +11, +14 %
  * The tolerances stand between: each of those five fails. */
-static void damage_on_its_way(void **state) {
-  (void)state;
+TEST(damage_on_its_way) {
   enum { SEEDS = 3 };
   static const double times[] = {3e-6, 16e-6};
   double damage[] = {0, 0}, reached[] = {0, 0}; /* means over particles, all of one mass, and seeds */
@@ -140,8 +139,7 @@ static void damage_on_its_way(void **state) {
   pinned("share of the sphere with damage at 16 us", reached[1], 0.7573, 0.02);
 }
 
-static void core_and_spall(void **state) {
-  (void)state;
+TEST(core_and_spall) {
   struct sph_inputs inputs = SPH_CASE("basalt-sphere", particles("3000", "45000"));
   size_t n = run_case_seeds(3, 10), opposite = 0;
   double largest[MOST_RUNS], bare[MOST_RUNS], second[MOST_RUNS], angle[MOST_RUNS];
@@ -197,8 +195,7 @@ static struct line through(size_t n, const double *q, const double *fraction, do
 
 /* Largest fragment against specific energy Q. One seed is the same body at every energy: Q* and s are computed for each
  * seed. */
-static void energy_ladder(void **state) {
-  (void)state;
+TEST(energy_ladder) {
   enum { MOST_RUNGS = 12, MOST_SEEDS = 100, WAYS = 4 };
   static const char *const quick[] = {"0.5", "2", "6"};
   static const char *const all[MOST_RUNGS] = {"0.3", "0.6",  "1", "1.5", "2", "2.25",
@@ -246,10 +243,4 @@ static void energy_ladder(void **state) {
     assert_true(slope[2][r] > 0.175 && slope[2][r] < 0.75);
   }
   assert_true(mean[0] > 0.8 && mean[rungs - 1] < 0.35);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(damage_on_its_way), cmocka_unit_test(core_and_spall),
-                                     cmocka_unit_test(energy_ladder)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,8 +39,7 @@ static void stiffness(struct dem_system *s, size_t freedoms, double arm, double 
 }
 
 /* Two bonded squares: the stiffness is Timoshenko's, symmetric, three zero modes, none negative. */
-static void stiffness_is_timoshenko(void **state) {
-  (void)state;
+TEST(stiffness_is_timoshenko) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
@@ -78,8 +77,7 @@ static void stiffness_is_timoshenko(void **state) {
 }
 
 /* Force = -dU/du at large deformations, and momentum and angular momentum balance there. */
-static void force_is_the_energys_gradient(void **state) {
-  (void)state;
+TEST(force_is_the_energys_gradient) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
@@ -120,8 +118,7 @@ static void force_is_the_energys_gradient(void **state) {
 
 /* A beam rotated as a whole, by any angle and several turns, has no forces; exchanging its ends exchanges the forces.
  */
-static void rotation_and_swap(void **state) {
-  (void)state;
+TEST(rotation_and_swap) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
@@ -156,8 +153,7 @@ static void rotation_and_swap(void **state) {
 }
 
 /* 20 beams of 1 cm, S = 1 cm, E 5e9 dyn/cm^2, clamped: P L^3 / 3EI + P L / GS = 6.408e-6 cm per dyn. */
-static void cantilever(void **state) {
-  (void)state;
+TEST(cantilever) {
   struct dem_tessellation *t = fixture_squares(21, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
@@ -190,8 +186,7 @@ static void cantilever(void **state) {
 }
 
 /* A square lattice of squares, pulled: only the beams along the pull act, and K_ext = E. */
-static void square_lattice_modulus(void **state) {
-  (void)state;
+TEST(square_lattice_modulus) {
   const uint32_t n = 6;
   struct dem_tessellation *t = fixture_squares(n, n, h, 0.0, true);
   const struct dem_inputs in = fixture_inputs(); /* contact is on: pulled grains do not touch */
@@ -212,12 +207,4 @@ static void square_lattice_modulus(void **state) {
   fixture_near(-top / (n * h) / strain, in.beam.young_modulus, 1e-9 * in.beam.young_modulus, "K_ext");
   dem_system_free(s);
   dem_tessellation_free(t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(stiffness_is_timoshenko),
-                                     cmocka_unit_test(force_is_the_energys_gradient),
-                                     cmocka_unit_test(rotation_and_swap), cmocka_unit_test(cantilever),
-                                     cmocka_unit_test(square_lattice_modulus)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,8 +38,7 @@ static struct impact collide(struct dem_inputs in, double v) {
 }
 
 /* Printed law: k = Y S / L_c = 8.862e9 dyn/cm (8.862e8 N/m per m), pi sqrt(m/2k) = 52.8 us. */
-static void printed_law(void **state) {
-  (void)state;
+TEST(printed_law) {
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_PRINTED;
   in.fidelity.time_step = 1e-8;
@@ -50,8 +49,7 @@ static void printed_law(void **state) {
 }
 
 /* Conservative law: k = kappa S^2 = 1.454e10 dyn/cm, 41.2 us, and all energy comes back. */
-static void conservative_law(void **state) {
-  (void)state;
+TEST(conservative_law) {
   struct dem_inputs in = fixture_inputs();
   in.fidelity.time_step = 1e-8;
   const struct impact i = collide(in, 0.5);
@@ -61,8 +59,7 @@ static void conservative_law(void **state) {
 }
 
 /* gamma_N = 2.566e4/s: a damped oscillator that may not pull, restitution 0.550. */
-static void damped_impact(void **state) {
-  (void)state;
+TEST(damped_impact) {
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_PRINTED;
   in.fidelity.time_step = 1e-8;
@@ -73,8 +70,7 @@ static void damped_impact(void **state) {
 }
 
 /* Corner on side, spinning, off centre: the conservative law returns all energy, up to the square of the step. */
-static void oblique_impact_conserves(void **state) {
-  (void)state;
+TEST(oblique_impact_conserves) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.5 * h, false);
   double error[2];
   for (int fine = 0; fine < 2; fine++) {
@@ -104,8 +100,7 @@ static void oblique_impact_conserves(void **state) {
 
 /* A square slides on another: Coulomb's force is mu times the normal force, against the slip, and the damping and
  * friction in the ledger equal the energy lost by the motion. */
-static void friction_takes_energy_out(void **state) {
-  (void)state;
+TEST(friction_takes_energy_out) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 1e-6 * h, false);
   for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++) {
     double error[2];
@@ -145,8 +140,7 @@ static void friction_takes_energy_out(void **state) {
 }
 
 /* Contact and damping of bonded pairs obey their switches. */
-static void bonded_switches(void **state) {
-  (void)state;
+TEST(bonded_switches) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
   for (int on = 0; on < 2; on++) {
     struct dem_inputs in = fixture_inputs();
@@ -174,14 +168,4 @@ static void bonded_switches(void **state) {
     dem_system_free(s);
   }
   dem_tessellation_free(t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(printed_law),
-                                     cmocka_unit_test(conservative_law),
-                                     cmocka_unit_test(damped_impact),
-                                     cmocka_unit_test(oblique_impact_conserves),
-                                     cmocka_unit_test(friction_takes_energy_out),
-                                     cmocka_unit_test(bonded_switches)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -251,8 +251,7 @@ static int crossings(const struct model *m, uint32_t i, uint32_t j, const struct
 }
 
 /* K99 eqs 2-6 with the signs that take energy out, at the middle of the contact line P1 P2, for grains in motion. */
-static void damping_and_friction_as_written(void **state) {
-  (void)state;
+TEST(damping_and_friction_as_written) {
   int compared = 0;
   for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++)
     for (int bonded = 0; bonded < 2; bonded++)
@@ -336,8 +335,7 @@ static void damping_and_friction_as_written(void **state) {
   assert_true(compared >= 12);
 }
 
-static void all_forces_are_gradients(void **state) {
-  (void)state;
+TEST(all_forces_are_gradients) {
   static const char *const classes[] = {"baseline", "v3", "v4"};
   static const double sizes[] = {0.02, 0.1, 0.4};
   for (size_t c = 0; c < 3; c++) {
@@ -360,10 +358,4 @@ static void all_forces_are_gradients(void **state) {
           }
   }
   assert_int_equal(unsetenv("CLAST_CPU"), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(all_forces_are_gradients),
-                                     cmocka_unit_test(damping_and_friction_as_written)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,7 @@
 #include "tests/support/run_case.h"
 
 /* One grain of two is driven along, across and around: the energy gained is the booked work. Two integrators. */
-static void driven_grains_do_work(void **state) {
-  (void)state;
+TEST(driven_grains_do_work) {
   for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; integrator++)
     for (int which = 0; which < 3; which++) {
       struct dem_tessellation *t = fixture_squares(2, 2, 0.01, 0.0, true);
@@ -40,8 +39,7 @@ static void driven_grains_do_work(void **state) {
 
 /* Loaded bodies: the momentum given to held grains is what the free ones lose, to rounding; the work is the only energy
  * input. */
-static void loads_balance(void **state) {
-  (void)state;
+TEST(loads_balance) {
   struct dem_inputs cases[] = {DEM_CASE("compression", "body.columns=8", "body.rows=8", "loading.rate=5 1/s",
                                         "loading.ramp=1 ms"),
                                DEM_CASE("uniaxial", "body.columns=8", "body.rows=8", "loading.rate=5 1/s",
@@ -58,8 +56,7 @@ static void loads_balance(void **state) {
 
 /* Sides of a uniaxial load slide along x, those of K99's confined compression do not; neither turns or leaves its line.
  */
-static void sides_are_held_as_described(void **state) {
-  (void)state;
+TEST(sides_are_held_as_described) {
   for (int confined = 0; confined < 2; confined++) {
     struct dem_inputs inputs = DEM_CASE(confined ? "compression" : "uniaxial", "body.columns=8", "body.rows=8",
                                         "loading.rate=5 1/s", "loading.ramp=0.5 ms");
@@ -84,8 +81,7 @@ static void sides_are_held_as_described(void **state) {
 
 /* Put a block by hand into an affine deformation: the recorded strains are the given ones, the stress is that of the
  * beams. */
-static void strains_are_those_put_in(void **state) {
-  (void)state;
+TEST(strains_are_those_put_in) {
   struct dem_inputs inputs = DEM_CASE("uniaxial", "body.columns=12", "body.rows=10", "grain.disorder=0.7");
   struct dem_run *run;
   assert_int_equal(dem_run_create(&inputs, 4, &run, NULL), STATUS_OK);
@@ -112,8 +108,7 @@ static void strains_are_those_put_in(void **state) {
 
 /* A stretched beam breaks by stretching, a rotated and hardly stretched one by bending, a compressed one by neither.
  * The rule is K99's eq 13: strain squared, angle not, the larger angle of the two. */
-static void modes_of_breaking(void **state) {
-  (void)state;
+TEST(modes_of_breaking) {
   const struct {
     double strain, first, second; /* in thresholds */
     int broken, bending;
@@ -143,8 +138,7 @@ static void modes_of_breaking(void **state) {
 }
 
 /* A square lattice: every beam has S = l = spacing, and half E S l t^2 at the threshold. */
-static void threshold_energy_of_a_square_lattice(void **state) {
-  (void)state;
+TEST(threshold_energy_of_a_square_lattice) {
   struct dem_inputs inputs = DEM_CASE("block-impact", "body.columns=6", "body.rows=5", "grain.disorder=0",
                                       "stop.end_time=2 us");
   struct ran ran = run_case_run(&dem_engine, &inputs, 1);
@@ -170,8 +164,7 @@ static void threshold_energy_of_a_square_lattice(void **state) {
 }
 
 /* Every beam along the load of a square lattice breaks at t_eps, so its strength is E t_eps, wherever the load ends. */
-static void strength_of_a_square_lattice(void **state) {
-  (void)state;
+TEST(strength_of_a_square_lattice) {
   const char *const ends[] = {"loading.strain_end=0.1 %", "loading.strain_end=3 %"};
   for (int k = 0; k < 2; k++) {
     struct dem_inputs inputs = DEM_CASE("uniaxial", "grain.disorder=0", "body.columns=8", "body.rows=8",
@@ -187,8 +180,7 @@ static void strength_of_a_square_lattice(void **state) {
 }
 
 /* Mass and moment of inertia of every grain by triangles of its outline, in long double. */
-static void grains_have_their_inertia(void **state) {
-  (void)state;
+TEST(grains_have_their_inertia) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2);
   const struct dem_inputs in = fixture_inputs();
   struct dem_system *s = fixture_create(t, &in);
@@ -216,8 +208,7 @@ static void grains_have_their_inertia(void **state) {
 
 /* Thresholds drawn per beam: of a Weibull law ln t has the mean ln t0 - gamma/m and the standard deviation pi/(m sqrt
  * 6). */
-static void thresholds_are_weibulls(void **state) {
-  (void)state;
+TEST(thresholds_are_weibulls) {
   struct dem_tessellation *t = fixture_disc(0.2, 0.01, 1.0, 2);
   struct dem_inputs in = fixture_inputs();
   const double m = 4.0, n = (double)t->pair_count;
@@ -294,8 +285,7 @@ static struct dem_tessellation *renumbered(const struct dem_tessellation *t) {
 }
 
 /* One seed gives a beam the same thresholds in a larger body, and for any numbering of its grains. */
-static void thresholds_belong_to_places(void **state) {
-  (void)state;
+TEST(thresholds_belong_to_places) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2), *larger = fixture_disc(0.09, 0.01, 1.0, 2);
   struct dem_tessellation *other = renumbered(t), *const bodies[2] = {larger, other};
   struct dem_inputs in = fixture_inputs();
@@ -326,8 +316,7 @@ static void thresholds_belong_to_places(void **state) {
 
 /* Squares face to face, a tenth slower than the speed reported to users and a tenth faster: the slow ones bounce, the
  * fast ones pass. */
-static void grains_pass_where_said(void **state) {
-  (void)state;
+TEST(grains_pass_where_said) {
   for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++)
     for (int fast = 0; fast < 2; fast++) {
       struct dem_inputs inputs = DEM_CASE("disc-explosion", law == DEM_CONTACT_PRINTED ? "contact.law=printed" : NULL);
@@ -349,8 +338,7 @@ static void grains_pass_where_said(void **state) {
 }
 
 /* Two discs before they meet: all energy is their translation, half of the relative speed each. */
-static void energy_of_two_discs_on_approach(void **state) {
-  (void)state;
+TEST(energy_of_two_discs_on_approach) {
   struct dem_inputs inputs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=10 m/s",
                                       "stop.end_time=2 us", "collision.impact_parameter=0.4");
   struct ran ran = run_case_run(&dem_engine, &inputs, 1);
@@ -362,20 +350,4 @@ static void energy_of_two_discs_on_approach(void **state) {
   /* centres 0.4 diameters apart across the approach, to a fraction of a grain: the lattices' outlines are random */
   fixture_near(fabs(a[1] - b[1]), 0.4 * inputs.body.diameter, 0.25 * inputs.grain.spacing, "impact parameter");
   free(ran.fragments);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(driven_grains_do_work),
-                                     cmocka_unit_test(loads_balance),
-                                     cmocka_unit_test(sides_are_held_as_described),
-                                     cmocka_unit_test(strains_are_those_put_in),
-                                     cmocka_unit_test(modes_of_breaking),
-                                     cmocka_unit_test(threshold_energy_of_a_square_lattice),
-                                     cmocka_unit_test(strength_of_a_square_lattice),
-                                     cmocka_unit_test(energy_of_two_discs_on_approach),
-                                     cmocka_unit_test(grains_have_their_inertia),
-                                     cmocka_unit_test(grains_pass_where_said),
-                                     cmocka_unit_test(thresholds_are_weibulls),
-                                     cmocka_unit_test(thresholds_belong_to_places)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

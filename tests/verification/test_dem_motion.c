@@ -57,8 +57,7 @@ static struct momenta momenta(const struct dem_system *s) {
 }
 
 /* Momentum to 1e-12 and angular momentum to 1e-10 of the grains' own, through breaking, friction and either law. */
-static void momenta_are_conserved(void **state) {
-  (void)state;
+TEST(momenta_are_conserved) {
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int kind = 0; kind < 4; kind++) {
     struct dem_inputs in = fixture_inputs();
@@ -86,8 +85,7 @@ static void momenta_are_conserved(void **state) {
 }
 
 /* Unbroken, undamped, conservative: total energy within 0.5 % over 10 ms at 1 us, and its error falls as dt^2. */
-static void energy_is_conserved(void **state) {
-  (void)state;
+TEST(energy_is_conserved) {
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   double worst[3] = {0};
   for (int fine = 0; fine < 3; fine++) {
@@ -147,8 +145,7 @@ static double order(int integrator, double finest, const struct dem_tessellation
   return log2(error[1] / error[0]);
 }
 
-static void integrators_have_their_order(void **state) {
-  (void)state;
+TEST(integrators_have_their_order) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01069, 1.0, 5);
   const double verlet = order(DEM_VERLET, 0.5e-6, t), gear = order(DEM_GEAR, 0.5e-6, t);
   assert_true(verlet > 1.9 && verlet < 2.1);
@@ -182,8 +179,7 @@ static double damped_error(double time_step) {
   return error;
 }
 
-static void gear_has_its_order_with_damping(void **state) {
-  (void)state;
+TEST(gear_has_its_order_with_damping) {
   const double coarse = damped_error(1e-6), fine = damped_error(0.5e-6);
   print_message("          Gear, damped pair: %.2e m at 0.5 us, order %.2f\n", fine, log2(coarse / fine));
   assert_true(log2(coarse / fine) > 4.5);
@@ -218,8 +214,7 @@ static double growth_per_period(int integrator, bool velocities, double share) {
 
 /* The longest step that the engine reports: Verlet's is the edge of stability. Gear's method of this order has no edge:
  * its modes grow or fall as (h omega)^7, and the limit is where the fastest gains 1 % of its energy in a period. */
-static void stable_steps_are_stable(void **state) {
-  (void)state;
+TEST(stable_steps_are_stable) {
   /* at h omega = 1.98 Verlet's energy swings by a factor 1/(1 - 0.99^2) = 50 and does not grow; ln 50 over 500 */
   assert_true(fabs(growth_per_period(DEM_VERLET, false, 0.99)) < 0.008);
   for (int velocities = 0; velocities < 2; velocities++) {
@@ -235,8 +230,7 @@ static void stable_steps_are_stable(void **state) {
 /* 2 / omega_max of two bonded parallelograms, by the eigenvalues of their 6 x 6 matrix: Timoshenko's beam between the
  * centres, and where bonded grains are in contact a spring of stiffness E S / L_c across the common side, 1/L_c the
  * mean of the inverse diameters. The side leans, so that the spring also turns the grains. */
-static void stable_step_of_two_bonded_grains(void **state) {
-  (void)state;
+TEST(stable_step_of_two_bonded_grains) {
   const double width[2] = {0.01, 0.016}, h = 0.01, lean = 0.004, side = hypot(h, lean);
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
@@ -291,8 +285,7 @@ static void stable_step_of_two_bonded_grains(void **state) {
 
 /* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value (Gear
  * 1971; Allen & Tildesley 1987, table E.1). The order alone does not determine all of them. */
-static void gear_has_its_coefficients(void **state) {
-  (void)state;
+TEST(gear_has_its_coefficients) {
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
   const double published[2][6] = {{3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
                                   {3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
@@ -327,8 +320,7 @@ static void gear_has_its_coefficients(void **state) {
 }
 
 /* Breaking, damping and friction on: kinetic + stored + broken + dissipated stays what it was. */
-static void ledger_closes(void **state) {
-  (void)state;
+TEST(ledger_closes) {
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int kind = 0; kind < 4; kind++) {
     struct dem_inputs in = fixture_inputs();
@@ -356,8 +348,7 @@ static void ledger_closes(void **state) {
 }
 
 /* A body at rest has no forces, to the last bit, and does not begin to move. */
-static void rest_is_rest(void **state) {
-  (void)state;
+TEST(rest_is_rest) {
   for (int disorder = 0; disorder < 2; disorder++) {
     const struct dem_lattice lattice = {.outline = DEM_OUTLINE_BLOCK,
                                         .spacing = 0.01,
@@ -389,8 +380,7 @@ static void rest_is_rest(void **state) {
 }
 
 /* Every beam is stretched and breaks in the first step: from then on the same bits as grains that had no beams. */
-static void broken_is_unbonded(void **state) {
-  (void)state;
+TEST(broken_is_unbonded) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
   for (int on_bonded = 0; on_bonded < 2; on_bonded++) {
     struct dem_inputs in = fixture_inputs();
@@ -424,8 +414,7 @@ static void broken_is_unbonded(void **state) {
 }
 
 /* Save in the middle, load into a fresh system: the same bits from then on, lists and all. */
-static void restored_run_has_the_same_bits(void **state) {
-  (void)state;
+TEST(restored_run_has_the_same_bits) {
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int integrator = 0; integrator < 2; integrator++) {
     struct dem_inputs in = fixture_inputs();
@@ -464,8 +453,7 @@ static void restored_run_has_the_same_bits(void **state) {
 }
 
 /* Gear's start on a beam in longitudinal oscillation: x = A cos wt + B sin wt, whose derivatives are known. */
-static void gear_starts_with_the_derivatives(void **state) {
-  (void)state;
+TEST(gear_starts_with_the_derivatives) {
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
@@ -493,8 +481,7 @@ static void gear_starts_with_the_derivatives(void **state) {
 }
 
 /* Long grains that do nothing but turn: their lists must be rebuilt, or the end of one passes through the other. */
-static void turning_grains_meet(void **state) {
-  (void)state;
+TEST(turning_grains_meet) {
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, false);
   const double half_length = 0.01, half_width = 0.0025, apart = 0.011; /* ends reach 0.0125 across, skins 0.0056 */
   for (int i = 0; i < 2; i++) {
@@ -523,8 +510,7 @@ static void turning_grains_meet(void **state) {
 }
 
 /* A grain a thousand kilometres away costs no memory, and does not slow the search down. */
-static void far_flung_grain(void **state) {
-  (void)state;
+TEST(far_flung_grain) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
   struct dem_inputs in = fixture_inputs();
   struct dem_system *s = fixture_create(t, &in);
@@ -547,8 +533,7 @@ static void far_flung_grain(void **state) {
   dem_tessellation_free(t);
 }
 
-static void step_loop_allocates_nothing(void **state) {
-  (void)state;
+TEST(step_loop_allocates_nothing) {
 #ifndef __SANITIZE_ADDRESS__
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   struct dem_inputs in = fixture_inputs();
@@ -568,8 +553,7 @@ static void step_loop_allocates_nothing(void **state) {
 
 /* Steps far beyond the stability limit, absurd thresholds and velocities: the step returns false or a finite state,
  * never a crash. */
-static void extremes(void **state) {
-  (void)state;
+TEST(extremes) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
   const double steps[] = {1e-30, 1e-4, 1.0, 1e20}, thresholds[] = {0.0, 1e-300, 1e20};
   for (size_t a = 0; a < 4; a++)
@@ -603,24 +587,4 @@ static void extremes(void **state) {
   assert_int_equal(dem_system_create(t, &in, 0, &s, &error), STATUS_CONTENT);
   assert_null(s);
   dem_tessellation_free(t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(momenta_are_conserved),
-                                     cmocka_unit_test(energy_is_conserved),
-                                     cmocka_unit_test(integrators_have_their_order),
-                                     cmocka_unit_test(gear_has_its_coefficients),
-                                     cmocka_unit_test(gear_has_its_order_with_damping),
-                                     cmocka_unit_test(stable_steps_are_stable),
-                                     cmocka_unit_test(stable_step_of_two_bonded_grains),
-                                     cmocka_unit_test(turning_grains_meet),
-                                     cmocka_unit_test(gear_starts_with_the_derivatives),
-                                     cmocka_unit_test(ledger_closes),
-                                     cmocka_unit_test(rest_is_rest),
-                                     cmocka_unit_test(broken_is_unbonded),
-                                     cmocka_unit_test(restored_run_has_the_same_bits),
-                                     cmocka_unit_test(far_flung_grain),
-                                     cmocka_unit_test(step_loop_allocates_nothing),
-                                     cmocka_unit_test(extremes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

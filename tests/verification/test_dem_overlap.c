@@ -154,13 +154,11 @@ static void area_is_brute_forces(const struct dem_kernels *kernels, int pairs) {
   assert_true(largest > 1.0);
 }
 
-static void overlap_baseline(void **state) {
-  (void)state;
+TEST(overlap_baseline) {
   area_is_brute_forces(&dem_kernels_baseline, getenv("CLAST_FULL") ? 1000000 : 100000);
 }
 
-static void overlap_best_class(void **state) {
-  (void)state;
+TEST(overlap_best_class) {
   area_is_brute_forces(dem_kernels_choose(), 1000000);
 }
 
@@ -183,8 +181,7 @@ static int crossings(const struct dem_ring ring[2], long double *px, long double
 
 /* The chord is the gradient of the area: move the first polygon, turn it, and compare differences of brute-force area.
  */
-static void chord_is_the_gradient(void **state) {
-  (void)state;
+TEST(chord_is_the_gradient) {
   uint64_t seed = 5;
   int met = 0, chords = 0;
   for (int n = 0; n < 20000; n++) {
@@ -297,15 +294,13 @@ static void windows_agree(double disorder) {
   dem_tessellation_free(t);
 }
 
-static void windows_are_exact(void **state) {
-  (void)state;
+TEST(windows_are_exact) {
   windows_agree(1.0);
 }
 
 /* A square lattice squeezed along x: sides in one line everywhere, to rounding; each contact has the force of its face.
  */
-static void windows_of_a_square_lattice(void **state) {
-  (void)state;
+TEST(windows_of_a_square_lattice) {
   windows_agree(0.0);
   const double h = 0.01, strain = 1e-3;
   struct dem_tessellation *t = fixture_squares(6, 6, h, 0.0, true);
@@ -324,8 +319,7 @@ static void windows_of_a_square_lattice(void **state) {
 }
 
 /* Pairs of every shape: a random polygon cut in two along a diagonal, then pushed and turned anyhow. */
-static void windows_of_odd_shapes(void **state) {
-  (void)state;
+TEST(windows_of_odd_shapes) {
   const struct dem_inputs base = fixture_inputs();
   uint64_t seed = 11;
   int windows = 0, generals = 0;
@@ -385,14 +379,4 @@ static void windows_of_odd_shapes(void **state) {
   }
   print_message("          %d contacts by windows, %d by the general overlap\n", windows, generals);
   assert_true(windows > 1000 && generals > 1000);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(overlap_baseline),
-                                     cmocka_unit_test(overlap_best_class),
-                                     cmocka_unit_test(chord_is_the_gradient),
-                                     cmocka_unit_test(windows_are_exact),
-                                     cmocka_unit_test(windows_of_a_square_lattice),
-                                     cmocka_unit_test(windows_of_odd_shapes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

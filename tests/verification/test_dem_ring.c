@@ -89,8 +89,7 @@ static double measured(const struct dem_inputs *in, uint64_t seed, int swings) {
   return M_PI * 2 * swings / (last - first);
 }
 
-static void a_ring_breathes(void **state) {
-  (void)state;
+TEST(a_ring_breathes) {
   double modulus, nu, error[3];
   matter(&modulus, &nu);
   const char *const spacings[] = {"grain.spacing=1.5 cm", "grain.spacing=0.75 cm", "grain.spacing=0.375 cm"};
@@ -116,9 +115,4 @@ static void a_ring_breathes(void **state) {
   /* Rough sides carry less: the error is linear in the spacing, and below 0. */
   assert_true(error[0] < error[1] && error[1] < error[2] && error[2] < 0);
   assert_true(error[0] > -0.15);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_ring_breathes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -62,8 +61,7 @@ static void agrees(struct result result, double table) {
     fail_msg("mean %.4f, table %.4f, tolerance %.4f", result.mean, table, tolerance);
 }
 
-static void likelihood_is_unbiased(void **state) {
-  (void)state;
+TEST(likelihood_is_unbiased) {
   struct result small = measure(EXPONENT_MASSES, PURE, 100, from_1),
                 large = measure(EXPONENT_MASSES, PURE, 1000, from_1);
   agrees(small, 2.010);
@@ -78,8 +76,7 @@ static void likelihood_is_unbiased(void **state) {
   agrees(measure(EXPONENT_MASSES, WITH_GIANT, 1000, from_1), 1.992);
 }
 
-static void least_squares_has_its_known_bias(void **state) {
-  (void)state;
+TEST(least_squares_has_its_known_bias) {
   struct result small = measure(EXPONENT_LEAST_SQUARES, PURE, 100, from_1);
   struct result large = measure(EXPONENT_LEAST_SQUARES, PURE, 1000, from_1);
   agrees(small, 1.660);
@@ -90,8 +87,7 @@ static void least_squares_has_its_known_bias(void **state) {
   agrees(measure(EXPONENT_LEAST_SQUARES, WITH_GIANT, 1000, from_1), 1.719);
 }
 
-static void cutoff_is_found(void **state) {
-  (void)state;
+TEST(cutoff_is_found) {
   agrees(measure(EXPONENT_UPPER_CUTOFF, PURE, 1000, from_1), 1.988);
   struct result with = measure(EXPONENT_UPPER_CUTOFF, CUTOFF_AT_100, 1000, from_1);
   agrees(with, 1.991);
@@ -108,8 +104,7 @@ static double grains(uint64_t sample, uint64_t i) {
   return n < 3000 ? n : floor(1 / fmax(1.0 / 2999.5 - left, 1e-9));
 }
 
-static void equal_grains_are_discrete(void **state) {
-  (void)state;
+TEST(equal_grains_are_discrete) {
   enum { N = 2000, SETS = 60 };
   /* From one grain up as if continuous: 1 + 1/mean(ln N) = 2.755, the sum done by hand (2.77 was measured). From
    * N - 1/2 the windows of estimates: 1.955, 1.996, 2.004. */
@@ -133,15 +128,4 @@ static void equal_grains_are_discrete(void **state) {
     printf("  whole grains from %.1f: %.3f +- %.3f\n", lower[w], mean[w], error);
     assert_true(fabs(mean[w] - expected[w]) < 4 * error + 0.003 /* error of the expected numbers */ + bias);
   }
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(likelihood_is_unbiased),
-      cmocka_unit_test(least_squares_has_its_known_bias),
-      cmocka_unit_test(cutoff_is_found),
-      cmocka_unit_test(equal_grains_are_discrete),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

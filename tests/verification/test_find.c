@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/inference/crossing.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -314,18 +313,15 @@ static void check(const struct law *laws, size_t n, uint64_t seed, bool judge) {
   assert_true(held >= least_hits(all, 0.93));
 }
 
-static void laws_that_chose_the_constants(void **state) {
-  (void)state;
+TEST(laws_that_chose_the_constants) {
   check(chosen_by, sizeof chosen_by / sizeof *chosen_by, 1, true);
 }
 
-static void laws_that_did_not(void **state) {
-  (void)state;
+TEST(laws_that_did_not) {
   check(others, sizeof others / sizeof *others, 101, false);
 }
 
-static void without_a_single_crossing(void **state) {
-  (void)state;
+TEST(without_a_single_crossing) {
   struct tally tally;
   printf("| law | crossing | above | below | several | plateau | open | runs |\n|---|---|---|---|---|---|---|---|\n");
   for (size_t k = 0; k < sizeof no_single_crossing / sizeof *no_single_crossing; k++) {
@@ -336,14 +332,4 @@ static void without_a_single_crossing(void **state) {
       printf(" %.3f |", (double)tally.kinds[i] / tally.n);
     printf(" %.0f |\n", tally.sum / tally.n);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(laws_that_chose_the_constants),
-      cmocka_unit_test(laws_that_did_not),
-      cmocka_unit_test(without_a_single_crossing),
-  };
-  analysis_init();
-  return cmocka_run_group_tests_name("find", tests, NULL, NULL);
 }

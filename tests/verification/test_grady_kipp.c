@@ -39,8 +39,7 @@ static double peak_stress(const struct sph_flaws *flaws, double rate, int growth
   return peak / 1e6;
 }
 
-static void particle_table(void **state) {
-  (void)state;
+TEST(particle_table) {
   static const struct {
     double rate;
     int growth, cap;
@@ -68,8 +67,7 @@ static void particle_table(void **state) {
 /* The isolated law itself, by its closed form and by integrating D = integral n'(t') (c_g (t - t'))^3 4pi/3 as it is
  * defined: the table's first column and fragment sizes. The closed form is exact; the last printed digit is the
  * tolerance. */
-static void isolated_law(void **state) {
-  (void)state;
+TEST(isolated_law) {
   static const struct {
     double rate, peak, size; /* 1/s, MPa, mm */
   } rows[] = {{60, 21.50, 9.60}, {1e3, 44.80, 1.20}, {1e4, 81.68, 0.219}};
@@ -93,8 +91,7 @@ static void isolated_law(void **state) {
   }
 }
 
-static void pieces(void **state) {
-  (void)state;
+TEST(pieces) {
   /* one flaw: D^(1/3) = c_g t / R_s exactly, whatever the steps, until the cap */
   double d = 0;
   for (int s = 0; s < 7; s++)
@@ -116,10 +113,4 @@ static void pieces(void **state) {
   assert_true(
       fabs(sph_material_largest_tension(n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]) -
            1) < 1e-14);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(pieces), cmocka_unit_test(isolated_law),
-                                     cmocka_unit_test(particle_table)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
 #include "engine/random.h"
@@ -160,8 +159,7 @@ static void largest(const struct source *source, size_t runs) {
   judge(&row);
 }
 
-static void intervals_hold_the_known_exponent(void **state) {
-  (void)state;
+TEST(intervals_hold_the_known_exponent) {
   static const struct source sources[] = {
       {"2.0, 20-100 each", 2.0, 20, 100, false, NULL, 1}, {"2.0, with giants", 2.0, 20, 100, true, NULL, 1},
       {"1.5, 20-100 each", 1.5, 20, 100, false, NULL, 1}, {"2.5, 20-100 each", 2.5, 20, 100, false, NULL, 1},
@@ -200,8 +198,7 @@ static void draw_from(const struct pooled_runs *population, double element_mass)
   }
 }
 
-static void intervals_hold_the_exponent_of_real_runs(void **state) {
-  (void)state;
+TEST(intervals_hold_the_exponent_of_real_runs) {
   static struct sample_runs discs;
   const char *path = getenv("CLAST_STORE");
   if (!path) {
@@ -222,8 +219,7 @@ static void intervals_hold_the_exponent_of_real_runs(void **state) {
 
 /* Fragments that are left out, or a window without end, make this worse with more runs: 2.07, 2.26, 2.35 from 20, 200
  * and 1000 runs without the largest of each. */
-static void least_squares_is_consistent(void **state) {
-  (void)state;
+TEST(least_squares_is_consistent) {
   static struct sample_runs drawn;
   static const size_t counts[] = {20, 200, 1000};
   const struct source sources[] = {{"2.0", 2.0, 20, 100, false, NULL, 1}, {"2.0, giants", 2.0, 20, 100, true, NULL, 1}};
@@ -250,8 +246,7 @@ static void least_squares_is_consistent(void **state) {
 }
 
 /* One run has no scatter between runs: no interval, by any method. */
-static void one_run_is_refused(void **state) {
-  (void)state;
+TEST(one_run_is_refused) {
   static struct sample_runs drawn;
   const struct source source = {"2.0", 2.0, 100, 100, false, NULL, 1};
   const struct pooled_runs made = draw(&source, 1, 1, &drawn);
@@ -261,15 +256,4 @@ static void one_run_is_refused(void **state) {
     assert_true(isnan(out.interval.half_width) && isnan(out.interval.standard_error));
     assert_true(m == 0 || isfinite(out.fit.beta));
   }
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_run_is_refused),
-      cmocka_unit_test(least_squares_is_consistent),
-      cmocka_unit_test(intervals_hold_the_known_exponent),
-      cmocka_unit_test(intervals_hold_the_exponent_of_real_runs),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -176,8 +175,7 @@ static void judge(const char *what, const struct sum *sum, double least_held, do
   assert_true(unseen <= most_unseen + 4 * sqrt(most_unseen * (1 - most_unseen) / (double)sum->n));
 }
 
-static void ladders(void **state) {
-  (void)state;
+TEST(ladders) {
   const size_t n = run_case_full() ? 250 : 8;
   struct sum tuned = {0}, held_back = {0};
   printf(
@@ -212,8 +210,7 @@ static struct limit_ladder ladder_of(size_t levels, size_t seeds, double values[
   return ladder;
 }
 
-static void exact_levels(void **state) {
-  (void)state;
+TEST(exact_levels) {
   double values[4][MOST_SEEDS];
   struct limit_law law, again;
   for (size_t l = 0; l < 4; l++)
@@ -248,8 +245,7 @@ static void exact_levels(void **state) {
 
 /* Two changes that fall faster than the steepest law (a shock between 50 and 400 points), that come back, and that
  * grow. Two errors against each other look like the first, near the step where they turn: so no limit is inferred. */
-static void changes_that_fall(void **state) {
-  (void)state;
+TEST(changes_that_fall) {
   static const struct {
     double mean[4];
     enum limit_verdict verdict;
@@ -272,8 +268,7 @@ static void changes_that_fall(void **state) {
 
 /* A limit that its range cuts at 0, and the distance to it, are one: no mean is farther from it than its interval says
  * (a share of 0.249 was up to 0.53 from a limit of 0 to 0.138). Shares of dust, 8 seeds. */
-static void a_distance_ends_where_the_limit_does(void **state) {
-  (void)state;
+TEST(a_distance_ends_where_the_limit_does) {
   double values[3][MOST_SEEDS] = {{0.827, 0.759, 0.824, 0.746, 0.724, 0.868, 0.677, 0.972},
                                   {0.373, 0.595, 0.726, 0.462, 0.724, 0.507, 0.541, 0.774},
                                   {0.313, 0.169, 0.283, 0.162, 0.24, 0.3, 0.241, 0.283}};
@@ -289,8 +284,7 @@ static void a_distance_ends_where_the_limit_does(void **state) {
   }
 }
 
-static void ranges_and_equal_runs(void **state) {
-  (void)state;
+TEST(ranges_and_equal_runs) {
   double values[3][MOST_SEEDS];
   struct limit_law law;
   for (size_t l = 0; l < 3; l++)
@@ -319,12 +313,4 @@ static void ranges_and_equal_runs(void **state) {
   values[0][0] = values[1][1] = values[2][2] = NAN; /* two complete seeds */
   assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
   assert_int_equal(law.verdict, LIMIT_TOO_FEW);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(exact_levels), cmocka_unit_test(changes_that_fall),
-                                     cmocka_unit_test(a_distance_ends_where_the_limit_does),
-                                     cmocka_unit_test(ranges_and_equal_runs), cmocka_unit_test(ladders)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

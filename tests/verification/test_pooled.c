@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -37,8 +36,7 @@ static struct pooled_runs make(struct made *made, uint64_t ensemble, double cuto
   return (struct pooled_runs){RUNS, made->first, made->masses};
 }
 
-static void true_exponent_with_an_interval(void **state) {
-  (void)state;
+TEST(true_exponent_with_an_interval) {
   enum { ENSEMBLES = 100 };
   static struct made made;
   for (int giant = 0; giant < 2; giant++) {
@@ -67,8 +65,7 @@ static void true_exponent_with_an_interval(void **state) {
 }
 
 /* Least squares has no bias when every bin of its window is filled; the same runs give the same bits. */
-static void least_squares_pools_too(void **state) {
-  (void)state;
+TEST(least_squares_pools_too) {
   static struct made made;
   struct pooled_runs runs = make(&made, 7, HUGE_VAL, true);
   struct pooled_exponent ls, again;
@@ -80,8 +77,7 @@ static void least_squares_pools_too(void **state) {
 }
 
 /* Fewer than five different masses below the largest of each run tell no exponent, and no p. */
-static void equal_masses_tell_nothing(void **state) {
-  (void)state;
+TEST(equal_masses_tell_nothing) {
   enum { FEW = 5, EACH = 40 };
   static double masses[FEW * EACH];
   size_t first[FEW + 1];
@@ -108,8 +104,7 @@ static void equal_masses_tell_nothing(void **state) {
   }
 }
 
-static void cutoffs_are_told_apart(void **state) {
-  (void)state;
+TEST(cutoffs_are_told_apart) {
   enum { ENSEMBLES = 60 };
   static struct made made;
   double mean = 0, squares = 0;
@@ -145,8 +140,7 @@ static void cutoffs_are_told_apart(void **state) {
   assert_true(fabs(mean - 2) < 4 * deviation / sqrt(ENSEMBLES));
 }
 
-static void spectrum_density_and_error(void **state) {
-  (void)state;
+TEST(spectrum_density_and_error) {
   /* Three runs: bin [1, 1.26) holds 3, 1 and 2, bin [10, 12.6) one in each (the largest), NaN and 0 nowhere. */
   const size_t first[4] = {0, 5, 8, 11};
   const double masses[11] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN, 10, 1.25, 1};
@@ -170,8 +164,7 @@ static void spectrum_density_and_error(void **state) {
 }
 
 /* The same three runs, cumulative, by size, and as two points: one of the first two runs, and one of the third. */
-static void spectrum_forms(void **state) {
-  (void)state;
+TEST(spectrum_forms) {
   const size_t first[4] = {0, 5, 8, 11}, points[3] = {0, 2, 3};
   const double masses[11] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN, 10, 1.25, 1};
   const struct pooled_runs runs = {3, first, masses};
@@ -204,8 +197,7 @@ static void spectrum_forms(void **state) {
 }
 
 /* The four names of an exponent: slopes of spectra of a pure power law, against the names. */
-static void exponent_in_forms(void **state) {
-  (void)state;
+TEST(exponent_in_forms) {
   enum { N = 400000 };
   const size_t first[2] = {0, N};
   double *masses = malloc(N * sizeof *masses);
@@ -229,8 +221,7 @@ static void exponent_in_forms(void **state) {
 /* Under the law p is uniform in 0..1; a lognormal law is refused. Windows end at each run's largest fragment. Both are
  * so for masses that are whole numbers of a particle's, 10 and more, with a particle that differs a little from run to
  * run, and with a few fragments that hold a particle of another body. */
-static void goodness_of_fit(void **state) {
-  (void)state;
+TEST(goodness_of_fit) {
   enum { SHOTS = 10, EACH = 40, CASES = 40 };
   static double masses[SHOTS * EACH];
   size_t first[SHOTS + 1];
@@ -288,8 +279,7 @@ static void goodness_of_fit(void **state) {
 }
 
 /* Four nearly equal parts in each run lie at the upper ends of their windows: they have no exponent. Unlike ones do. */
-static void equal_parts_have_no_exponent(void **state) {
-  (void)state;
+TEST(equal_parts_have_no_exponent) {
   static const double apart[] = {0, 1e-16, 1e-12, 1e-6, 1e-3};
   for (size_t c = 0; c < sizeof apart / sizeof apart[0]; c++) {
     double masses[12];
@@ -311,8 +301,7 @@ static void equal_parts_have_no_exponent(void **state) {
   assert_true(isfinite(out.fit.beta) && isfinite(out.interval.half_width));
 }
 
-static void empty_and_bad(void **state) {
-  (void)state;
+TEST(empty_and_bad) {
   const size_t first[4] = {0, 0, 1, 1};
   const double masses[1] = {3};
   struct pooled_runs runs = {3, first, masses}, none = {0, first, masses};
@@ -331,21 +320,4 @@ static void empty_and_bad(void **state) {
   assert_int_equal(pooled_exponent(&runs, EXPONENT_UPPER_CUTOFF, 1, 0.95, &out, NULL), STATUS_USAGE); /* of runs only */
   assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
   assert_true(isnan(rivals.cutoff_p));
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(true_exponent_with_an_interval),
-      cmocka_unit_test(least_squares_pools_too),
-      cmocka_unit_test(equal_masses_tell_nothing),
-      cmocka_unit_test(cutoffs_are_told_apart),
-      cmocka_unit_test(spectrum_density_and_error),
-      cmocka_unit_test(spectrum_forms),
-      cmocka_unit_test(exponent_in_forms),
-      cmocka_unit_test(goodness_of_fit),
-      cmocka_unit_test(equal_parts_have_no_exponent),
-      cmocka_unit_test(empty_and_bad),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -17,8 +16,7 @@ static double exact_mean(double k, double span) {
   return 1 / k - span / expm1(k * span);
 }
 
-static void masses_any_exponent(void **state) {
-  (void)state;
+TEST(masses_any_exponent) {
   const double betas[] = {-1, 0, 0.5, 0.999, 1, 1.001, 1.5, 2, 3.7, 8}, spans[] = {0.7, 3, 9, HUGE_VAL};
   for (size_t s = 0; s < 4; s++) {
     for (size_t b = 0; b < sizeof betas / sizeof *betas; b++) {
@@ -39,8 +37,7 @@ static void masses_any_exponent(void **state) {
   assert_true(fabs(fit.log_likelihood + 400 * log(5)) < 1e-10);
 }
 
-static void groups_are_one_sample(void **state) {
-  (void)state;
+TEST(groups_are_one_sample) {
   struct power_law_group one = {30, 0.8, 5, 0}, split[3] = {{10, 0.5, 5, 0}, {12, 1.0, 5, 0}, {8, 0.875, 5, 0}};
   assert_true(fabs((10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30 - 0.8) < 0.04);
   one.mean = (10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30;
@@ -53,8 +50,7 @@ static void groups_are_one_sample(void **state) {
   assert_true(isnan(power_law_fit(0, NULL).beta));
 }
 
-static void normalisation_is_incomplete_gamma(void **state) {
-  (void)state;
+TEST(normalisation_is_incomplete_gamma) {
   /* Z = integral over m > a of (m/a)^-beta exp(-(m-a)/xc) dm/m... = e^s s^k Gamma(-k, s), also for negative arguments.
    */
   const double ks[] = {-1.5, -0.3, 0.5, 1, 1.7, 3}, rates[] = {1e-6, 1e-3, 0.1, 1, 20};
@@ -79,8 +75,7 @@ static void normalisation_is_incomplete_gamma(void **state) {
   assert_true(fabs(half - log(sqrt(M_PI / 2))) < 1e-12);
 }
 
-static void moments_are_derivatives(void **state) {
-  (void)state;
+TEST(moments_are_derivatives) {
   for (int kind = POWER_LAW_CUTOFF; kind <= POWER_LAW_LOGNORMAL; kind++) {
     double mean[2], covariance[3], k = 0.8, s = 0.05, step = 1e-5;
     enum power_law_kind which = (enum power_law_kind)kind;
@@ -100,8 +95,7 @@ static void moments_are_derivatives(void **state) {
 
 /* A narrow lognormal far from 0: its variance is 1/(2 s), that of h = u^2 is 2 u0^2/s + 1/(2 s^2), exact to rounding
  * although the squares of the means are a million times as large. */
-static void covariances_do_not_cancel(void **state) {
-  (void)state;
+TEST(covariances_do_not_cancel) {
   const double s = 3e3, u0 = 12;
   double mean[2], covariance[3];
   power_law_log_normalisation(POWER_LAW_LOGNORMAL, -2 * s * u0, s, HUGE_VAL, mean, covariance);
@@ -111,8 +105,7 @@ static void covariances_do_not_cancel(void **state) {
   assert_true(fabs(covariance[2] / (2 * u0 * u0 / s + 0.5 / s / s) - 1) < 1e-11);
 }
 
-static void pure_sample_needs_no_factor(void **state) {
-  (void)state;
+TEST(pure_sample_needs_no_factor) {
   /* Evenly spaced quantiles of a pure law with its upper tail thickened: s = 0 must be returned as such. */
   double u[200], masses[200];
   for (int i = 0; i < 200; i++) {
@@ -130,8 +123,7 @@ static void pure_sample_needs_no_factor(void **state) {
 
 /* Masses that are equal but for a thousandth, in a window that begins far below them: no method tells an exponent. The
  * law with a cut-off has one of -76 000 there. A rival that cannot be fitted has no p. */
-static void near_equal_masses_have_no_exponent(void **state) {
-  (void)state;
+TEST(near_equal_masses_have_no_exponent) {
   double masses[40];
   for (uint64_t i = 0; i < 40; i++)
     masses[i] = 1 + 0.01 * random_draw(4, 4, i, 0);
@@ -147,8 +139,7 @@ static void near_equal_masses_have_no_exponent(void **state) {
 }
 
 /* Moving all masses by a factor moves no exponent; the windows go along. */
-static void units_do_not_matter(void **state) {
-  (void)state;
+TEST(units_do_not_matter) {
   double masses[300], scaled[300];
   for (uint64_t i = 0; i < 300; i++) {
     masses[i] = pow(1 - random_draw(3, 3, i, 0), -0.8);
@@ -182,8 +173,7 @@ static void leave_out_like_fits(size_t count, const struct power_law_group *grou
   }
 }
 
-static void leaving_out_is_fitting_the_rest(void **state) {
-  (void)state;
+TEST(leaving_out_is_fitting_the_rest) {
   struct power_law_group masses[203];
   for (uint64_t g = 0; g < 203; g++) {
     const double weight = 1 + floor(40 * random_draw(9, 1, g, 0)), span = 2 + 6 * random_draw(9, 2, g, 0);
@@ -210,20 +200,4 @@ static void leaving_out_is_fitting_the_rest(void **state) {
   double betas[3];
   assert_true(power_law_leave_out(3, ends, 1, betas));
   assert_true(isfinite(betas[0]) && isfinite(betas[1]) && isnan(betas[2]));
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(masses_any_exponent),
-      cmocka_unit_test(groups_are_one_sample),
-      cmocka_unit_test(normalisation_is_incomplete_gamma),
-      cmocka_unit_test(moments_are_derivatives),
-      cmocka_unit_test(covariances_do_not_cancel),
-      cmocka_unit_test(pure_sample_needs_no_factor),
-      cmocka_unit_test(near_equal_masses_have_no_exponent),
-      cmocka_unit_test(units_do_not_matter),
-      cmocka_unit_test(leaving_out_is_fitting_the_rest),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

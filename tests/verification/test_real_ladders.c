@@ -1,23 +1,17 @@
 /* Does the inferred limit foretell finer runs? Ladders of real scenes: each level has twice the particles or grains of
  * the one before, with the same seeds. From the levels up to one, `clast converge` would state a mean at four times
  * its particles; the ladder has this level, too. The table of real_ladders.md. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
 #include "db/store/views.h"
 #include "schemas/csv.h"
+#include "tests/support/check.h"
 
 enum { LEVELS = LIMIT_LEVELS, SEEDS = 16, RESULTS = 40, FINER = 2 /* levels: four times the particles */ };
 
@@ -152,8 +146,7 @@ static void print_ladder(const struct ladder *ladder, size_t q) {
     printf(" - |\n");
 }
 
-static void real_ladders(void **state) {
-  (void)state;
+TEST(real_ladders) {
   static const char folder[] = CLAST_SOURCE_DIR "/tests/verification/ladders";
   static struct ladder ladder;
   struct count all = {0};
@@ -185,10 +178,4 @@ static void real_ladders(void **state) {
   assert_true((double)all.held >= least * seen - 2 * sqrt(least * (1 - least) * seen));
   assert_true(all.not_seen <= 3 * (all.seen + all.not_seen) / 10);
   assert_true(all.unmoved <= 5);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(real_ladders)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -15,8 +14,7 @@ static double normal(uint64_t stream, uint64_t sample, uint64_t i) {
   return sqrt(-2 * log(1 - random_uniform(bits[0]))) * cos(2 * M_PI * random_uniform(bits[1]));
 }
 
-static void summaries_are_exact(void **state) {
-  (void)state;
+TEST(summaries_are_exact) {
   /* Offsets at which a plain sum of squares loses all digits: mean 1e9 + 3, variance 2.5. */
   const double values[] = {1e9 + 1, NAN, 1e9 + 2, 1e9 + 5, 1e9 + 4, NAN, 1e9 + 3};
   struct sample_summary s = sample_summarise(7, values, 0.95);
@@ -72,8 +70,7 @@ static double coverage(bool bimodal, size_t n0, double half_width, int trials, d
   return (double)held / trials;
 }
 
-static void stopping_keeps_its_level(void **state) {
-  (void)state;
+TEST(stopping_keeps_its_level) {
   enum { TRIALS = 2000 };
   double length, error = sqrt(0.95 * 0.05 / TRIALS);
   /* Normal data: at least the level (the guard and the last batch overshoot the width wanted). */
@@ -89,8 +86,7 @@ static void stopping_keeps_its_level(void **state) {
   assert_true(coverage(true, 3, 0.05, TRIALS, &length) > least);
 }
 
-static void stopping_waits(void **state) {
-  (void)state;
+TEST(stopping_waits) {
   double equal[100], scattered[100];
   const double zeros[100] = {0}, tiny[4] = {0, 0, 1e-170, 3e-170};
   for (int i = 0; i < 100; i++) {
@@ -124,8 +120,7 @@ static double mean_of(size_t n, const uint32_t *runs, void *context) {
 }
 
 /* Of a mean, leaving out one run after another is Student's interval itself; of groups of runs, nearly. */
-static void jackknife_of_a_mean_is_students(void **state) {
-  (void)state;
+TEST(jackknife_of_a_mean_is_students) {
   enum { MOST = 250, TRIALS = 400 };
   static const size_t sizes[] = {2, 3, 50, SAMPLE_GROUPS};
   double values[MOST], ratio = 0;
@@ -156,8 +151,7 @@ static double mean_of_four_at_least(size_t n, const uint32_t *runs, void *contex
   return n < 4 ? (double)NAN : mean_of(n, runs, context);
 }
 
-static void jackknife_refuses_what_it_cannot_tell(void **state) {
-  (void)state;
+TEST(jackknife_refuses_what_it_cannot_tell) {
   const double values[7] = {1, 4, 2, 8, 5, 7, 1};
   struct clusters clusters = {values};
   struct sample_interval none = sample_jackknife(0, 0.9, mean_of, &clusters);
@@ -174,16 +168,14 @@ static void jackknife_refuses_what_it_cannot_tell(void **state) {
 }
 
 /* An infinite value, which only a damaged store has: no scatter is known. It is not 0, which would end a campaign. */
-static void infinite_values_have_no_interval(void **state) {
-  (void)state;
+TEST(infinite_values_have_no_interval) {
   const double values[] = {1, HUGE_VAL, 2};
   const struct sample_summary summary = sample_summarise(3, values, 0.95);
   assert_true(isinf(summary.mean));
   assert_true(isnan(summary.standard_deviation) && isnan(summary.standard_error) && isnan(summary.half_width));
 }
 
-static void crossed_by_hand(void **state) {
-  (void)state;
+TEST(crossed_by_hand) {
   struct sample_crossed c;
   /* Means 2 and 5, of points 2.25. Parts -+ 1/sqrt(2) and -+ 3/sqrt(2): seeds -+ 4/sqrt(2), of seeds 16/4; pairs 6/2.
    */
@@ -240,8 +232,7 @@ static double crossed_coverage(size_t points, size_t seeds, double a, double b, 
   return (double)held / TRIALS;
 }
 
-static void crossed_keeps_its_level(void **state) {
-  (void)state;
+TEST(crossed_keeps_its_level) {
   static const struct {
     size_t points, seeds;
     double a, b, e;
@@ -263,19 +254,4 @@ static void crossed_keeps_its_level(void **state) {
            laws[i].skew ? ", skew" : "", share, old);
     assert_true(share > laws[i].least - 4 * sqrt(0.95 * 0.05 / 1000));
   }
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(infinite_values_have_no_interval),
-      cmocka_unit_test(summaries_are_exact),
-      cmocka_unit_test(stopping_keeps_its_level),
-      cmocka_unit_test(stopping_waits),
-      cmocka_unit_test(jackknife_of_a_mean_is_students),
-      cmocka_unit_test(jackknife_refuses_what_it_cannot_tell),
-      cmocka_unit_test(crossed_by_hand),
-      cmocka_unit_test(crossed_keeps_its_level),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

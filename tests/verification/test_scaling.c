@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/inference/scaling.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -262,22 +261,11 @@ static void check(const struct law *given, bool judge) {
   free(runs);
 }
 
-static void percolation_on_the_square_lattice(void **state) {
-  (void)state;
+TEST(percolation_on_the_square_lattice) {
   check(getenv("CLAST_FULL") ? &asked : &quick, true);
 }
 
-static void other_laws(void **state) {
-  (void)state;
+TEST(other_laws) {
   for (size_t k = 0; getenv("CLAST_FULL") && k < sizeof others / sizeof *others; k++)
     check(&others[k], false);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(percolation_on_the_square_lattice),
-      cmocka_unit_test(other_laws),
-  };
-  analysis_init();
-  return cmocka_run_group_tests_name("scaling", tests, NULL, NULL);
 }

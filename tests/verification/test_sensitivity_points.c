@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -373,19 +372,16 @@ static int coverage_of(bool chosen) {
   return all.failed;
 }
 
-static void chosen_laws(void **state) {
-  (void)state;
+TEST(chosen_laws) {
   assert_int_equal(coverage_of(true), 0);
 }
-static void other_laws(void **state) {
-  (void)state;
+TEST(other_laws) {
   const int failed = coverage_of(false);
   assert_true(failed <= (is_full() ? MOST_FAILED : 0));
 }
 
 /* Several seeds of a point: shares of the means and of the seeds, also of noise that all points share. */
-static void several_seeds(void **state) {
-  (void)state;
+TEST(several_seeds) {
   static const size_t number[] = {20, 50, 100};
   struct summary all = {.worst = 1};
   for (size_t l = 0; l < 4; l++) {
@@ -405,8 +401,7 @@ static void several_seeds(void **state) {
 
 /* The index of an input that does nothing is small on average: the variance of its coefficients is taken off (a fit
  * of 16 columns to 50 points). */
-static void no_bias(void **state) {
-  (void)state;
+TEST(no_bias) {
   enum { DRAWS = 200 };
   static struct points p;
   double estimate[DRAWS];
@@ -443,8 +438,7 @@ static void ask(struct points *p, size_t k, const bool *named, struct sensitivit
 
 /* Two seeds that all points share scatter much: shares of single runs are nearly unknown, those of the means are not.
  * The first input explains most of them, and is told to be the first. */
-static void ranks_are_those_of_the_means(void **state) {
-  (void)state;
+TEST(ranks_are_those_of_the_means) {
   static struct points p = {.seed = 3, .n = 40};
   const bool named[2] = {false};
   struct sensitivity_point found[3];
@@ -471,8 +465,7 @@ static void ranks_are_those_of_the_means(void **state) {
   assert_true(found[2].of_runs.high <= 1 - found[0].of_runs.low);
 }
 
-static void not_told(void **state) {
-  (void)state;
+TEST(not_told) {
   static struct points p = {.seed = 1, .n = 60};
   bool named[4] = {false};
   struct sensitivity_point found[5];
@@ -522,15 +515,4 @@ static void not_told(void **state) {
   ask(&s, 3, named, found, &needed);
   for (size_t i = 0; i < 3; i++)
     assert_int_equal(found[i].verdict, SENSITIVITY_STEPS);
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(ranks_are_those_of_the_means),
-                                     cmocka_unit_test(not_told),
-                                     cmocka_unit_test(no_bias),
-                                     cmocka_unit_test(chosen_laws),
-                                     cmocka_unit_test(several_seeds),
-                                     cmocka_unit_test(other_laws)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

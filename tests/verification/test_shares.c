@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
 #include "tests/support/check.h"
@@ -177,24 +176,20 @@ static void study(size_t laws, const struct law *law) {
   }
 }
 
-static void laws_that_the_rules_were_chosen_by(void **state) {
-  (void)state;
+TEST(laws_that_the_rules_were_chosen_by) {
   study(sizeof chosen_by / sizeof chosen_by[0], chosen_by);
 }
 
-static void laws_that_were_held_back(void **state) {
-  (void)state;
+TEST(laws_that_were_held_back) {
   study(sizeof held_back / sizeof held_back[0], held_back);
 }
 
-static void other_laws(void **state) {
-  (void)state;
+TEST(other_laws) {
   study(sizeof others / sizeof others[0], others);
 }
 
 /* n equal shares: the bound of what may be unseen, 1 - 0.05^(1/n), on the side where there is room. */
-static void equal_values_bound_the_mean(void **state) {
-  (void)state;
+TEST(equal_values_bound_the_mean) {
   double x[30];
   for (int i = 0; i < 30; i++)
     x[i] = 1;
@@ -211,15 +206,4 @@ static void equal_values_bound_the_mean(void **state) {
   s = sample_summarise(1, x, 0.95);
   sample_of_share(&s, 0.95);
   assert_true(isnan(s.low) && isnan(s.high));
-}
-
-int main(void) {
-  analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(equal_values_bound_the_mean),
-      cmocka_unit_test(laws_that_the_rules_were_chosen_by),
-      cmocka_unit_test(laws_that_were_held_back),
-      cmocka_unit_test(other_laws),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,8 +55,7 @@ static struct ring ring(double particles, bool correction) {
   return r;
 }
 
-static void free_free_bar(void **state) {
-  (void)state;
+TEST(free_free_bar) {
   const struct sph_material m = solid_basalt();
   const double exact = sqrt(solid_young(&m) / m.density) / 0.08;
   assert_true(fabs(exact - 55.4e3) < 50);
@@ -87,9 +86,4 @@ static void free_free_bar(void **state) {
     /* Rayleigh's value, except for the lattice's sum along z (bodies.h: 0.993) and the error left by the first order */
     assert_true(fabs(limit / exact - (1 - pow(nu * M_PI / 4, 2) / 4)) < 0.01);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(free_free_bar)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@ static struct sph_material nylon(void) { /* engine/sph/material/builtin/nylon.ya
                                .weibull = {NAN, NAN}};
 }
 
-static void nylon_on_basalt(void **state) {
-  (void)state;
+TEST(nylon_on_basalt) {
   const double speed = 3200, spacing = 1e-4, length = 90 * spacing, thickness = 60 * spacing;
   const struct sph_material target = solid_basalt(), projectile = nylon();
   double low = 0, high = speed;
@@ -78,9 +77,4 @@ static void nylon_on_basalt(void **state) {
       assert_true(fabs(off[k][0]) < 0.005 && fabs(off[k][1]) < 0.01);
     solid_end(&c);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(nylon_on_basalt)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

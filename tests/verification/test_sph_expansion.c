@@ -117,8 +117,7 @@ static double largest_miss(const double share[TIMES], const double exact[TIMES])
 /* Measured with 8000 particles: a ball within 0.6 (2e7 J/kg) and 8.2 % (1e8) of the exact shares, with the gradient
  * correction within 0.2 and 0.5 %; one that is hot within half its radius, whose outer half a shock throws off, within
  * 7.6 and 5.8 %: a shock front is some 3h wide, the ball's radius 11h. The bounds are somewhat wider. */
-static void motion_of_a_hot_ball(void **state) {
-  (void)state;
+TEST(motion_of_a_hot_ball) {
   static const struct {
     double energy, hot, most[2]; /* J/kg, of the radius, without and with the correction */
   } balls[] = {{2e7, 1, {0.01, 0.005}}, {1e8, 1, {0.1, 0.01}}, {2e7, 0.5, {0.1, 0.08}}};
@@ -143,9 +142,4 @@ static void motion_of_a_hot_ball(void **state) {
           assert_true(miss < balls[b].most[corrected]);
       }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(motion_of_a_hot_ball)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

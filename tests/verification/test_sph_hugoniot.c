@@ -16,8 +16,7 @@
  */
 #include "tests/support/sph_solid.h"
 
-static void jump_conditions(void **state) {
-  (void)state;
+TEST(jump_conditions) {
   struct sph_material al = solid_aluminium(), basalt = solid_basalt();
   struct solid_jump a = solid_hugoniot(&al, 1000), b = solid_hugoniot(&basalt, 1000);
   print_message("Hugoniot at 1000 m/s: aluminium Us %.2f m/s, P %.4f GPa; basalt Us %.2f, P %.4f\n", a.shock,
@@ -130,8 +129,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
   return s;
 }
 
-static void shocks(void **state) {
-  (void)state;
+TEST(shocks) {
   static const struct {
     const char *name;
     int lattice;
@@ -179,8 +177,7 @@ static void shocks(void **state) {
 
 /* Shocks that squeeze matter to half and less: layers stand deep within the kernel there, and density by continuity
  * falls behind that of the particles. Pass if this error does not grow. */
-static void strong(void **state) {
-  (void)state;
+TEST(strong) {
   static const struct { double up, pressure; } cases[] = {{5000, 0.01}, {10000, 0.02}, {20000, 0.05}};
   const struct sph_material m = solid_aluminium();
   for (int k = 0; k < 3; k++) {
@@ -282,15 +279,8 @@ static void ramp(bool correction) {
   solid_end(&c);
 }
 
-static void yield_ramp(void **state) {
-  (void)state;
+TEST(yield_ramp) {
   ramp(true);
   if (solid_full())
     ramp(false);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(jump_conditions), cmocka_unit_test(shocks),
-                                     cmocka_unit_test(strong), cmocka_unit_test(yield_ramp)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,8 +49,7 @@ static double vibrate(double dt, double viscosity, double *out, size_t n) {
   return case_total(l);
 }
 
-static void second_order(void **state) {
-  (void)state;
+TEST(second_order) {
   enum { N = 300, LEVELS = 4 };
   static double result[LEVELS][N];
   for (int viscous = 0; viscous < 2; viscous++) {
@@ -151,8 +150,7 @@ static double turned(bool correction, double steps, bool whole_body) {
   return worst;
 }
 
-static void rotation(void **state) {
-  (void)state;
+TEST(rotation) {
   const double coarse = turned(true, 2000, true), fine = turned(true, 4000, true);
   print_message("stress after a quarter turn: off by %.1e (2000 steps), %.1e (4000); without correction %.2f at the "
                 "surface, %.1e "
@@ -183,8 +181,7 @@ static bool central(const struct sph_particles *p, size_t i) {
 
 /* -sigma_xx against the strain: slope K + 4 mu/3, then K beyond the Hugoniot elastic limit. Small strains, so that the
  * pressure is linear to 1e-4; Y is low, so that yielding begins early. */
-static void yield_ramp(void **state) {
-  (void)state;
+TEST(yield_ramp) {
   struct sph_particles *p = strained(6, -100, 0, 0, 0);
   struct sph_material m = case_basalt;
   m.yield.stress = 2e6;
@@ -236,8 +233,7 @@ static void yield_ramp(void **state) {
 
 /* Simple shear: S_xy = mu gamma, and u = S^2/(4 mu rho) (work of the shear stress): the factors 2 of Hooke and of the
  * power. */
-static void shear(void **state) {
-  (void)state;
+TEST(shear) {
   struct sph_particles *p = strained(6, 0, 0, 0, 200);
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
   struct case_parameters parameters = case_parameters_default();
@@ -324,8 +320,7 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
   return peak / 1e6;
 }
 
-static void damage(void **state) {
-  (void)state;
+TEST(damage) {
   static const char *const names[3][2] = {{"cube_root, ba95", "linear, ba95"},
                                           {"cube_root, count", "linear, count"},
                                           {"cube_root, none", "linear, none"}};
@@ -356,8 +351,7 @@ static void damage(void **state) {
 
 /* Effect of damage: in a half damaged stretch, the holding force and the heating power are (1-D) times those of the
  * undamaged one; in compression the pressure is unchanged. The work of held particles shows both. */
-static void damaged_stress(void **state) {
-  (void)state;
+TEST(damaged_stress) {
   double work[2][2] = {{0}};
   for (int sign = 0; sign < 2; sign++)
     for (int half = 0; half < 2; half++) {
@@ -396,8 +390,7 @@ static void damaged_stress(void **state) {
 
 /* ---- the loops' formulas against the plain ones ---- */
 
-static void principal_values(void **state) {
-  (void)state;
+TEST(principal_values) {
   double worst = 0;
   for (uint64_t k = 0; k < 20000; k++) {
     double s[5];
@@ -418,8 +411,7 @@ static void principal_values(void **state) {
   assert_true(fabs(fracture_largest(0, 3, 0, 0, 0) - 3) < 1e-14);
 }
 
-static void pressures(void **state) {
-  (void)state;
+TEST(pressures) {
   const struct case_block block = {{12, 12, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
   for (size_t i = 0; i < p->n; i++) { /* all branches */
@@ -448,8 +440,7 @@ static void pressures(void **state) {
 
 /* Where tension_limit replaces flaws, torn matter has no shear strength: Y falls from the density at rest to nothing at
  * 0.9 of it. Matter with flaws keeps its Y (D takes its strength), and so does matter without a limit. */
-static void torn_matter_bears_no_shear(void **state) {
-  (void)state;
+TEST(torn_matter_bears_no_shear) {
   const struct case_block block = {{12, 12, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaws *flaws = case_flaws(p->n, 1e-30, 1, 0);
@@ -482,8 +473,7 @@ static void torn_matter_bears_no_shear(void **state) {
 
 /* ---- collisions ---- */
 
-static void elastic_pair(void **state) {
-  (void)state;
+TEST(elastic_pair) {
   for (int kind = 0; kind < 3; kind++) {
     const bool strength = kind > 0, correction = kind > 1;
     const struct case_block blocks[2] = {{{6, 6, 6}, {0, 0, 0}, {0, 0, 60}, spacing},
@@ -519,15 +509,4 @@ static void elastic_pair(void **state) {
     sph_system_free(s);
     sph_particles_free(p);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(second_order), cmocka_unit_test(rotation),
-      cmocka_unit_test(yield_ramp),   cmocka_unit_test(shear),
-      cmocka_unit_test(damage),       cmocka_unit_test(damaged_stress),
-      cmocka_unit_test(pressures),    cmocka_unit_test(principal_values),
-      cmocka_unit_test(elastic_pair), cmocka_unit_test(torn_matter_bears_no_shear),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,8 +9,7 @@ static void near(double got, double want, double tolerance, const char *what) {
 }
 
 /* To the digits printed there. */
-static void plateaus(void **state) {
-  (void)state;
+TEST(plateaus) {
   struct exact_front precursor, shock;
   exact_piston(&exact_porous_aluminium, 458, &precursor, &shock);
   near(precursor.speed, 4117, 0.5, "precursor");
@@ -36,8 +35,7 @@ static void plateaus(void **state) {
 
 /* The state behind a piston, over speeds: the engine finds the same alpha and P from (rho, u) in one step, or by
  * following the compression. The oracle's alpha comes from 2000 midpoint steps: 1e-9. */
-static void engine_agrees(void **state) {
-  (void)state;
+TEST(engine_agrees) {
   const struct exact_matter *m = &exact_porous_aluminium;
   struct sph_material solid = {.density = 2700, .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};
   struct sph_palpha_material given = {.distention = 1.275,
@@ -64,9 +62,4 @@ static void engine_agrees(void **state) {
     near(s.pressure, shock.pressure, 1e-6 * shock.pressure, "P of the shock, followed");
     near(s.distention, shock.alpha, 1e-7, "alpha of the shock, followed");
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(plateaus), cmocka_unit_test(engine_agrees)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,8 +33,7 @@ static void front_is(const struct sph_front *f, const struct exact_front *want) 
   near(f->distention, want->alpha, 1e-6, "distention behind a front");
 }
 
-static void exact_answers_agree(void **state) {
-  (void)state;
+TEST(exact_answers_agree) {
   for (int a = 0; a < 4; a++)
     for (int k = 0; k < 4; k++) {
       const double distention = (double[]){1, 1.1, 1.275, 1.6}[a], piston = (double[]){30, 200, 458, 900}[k];
@@ -58,8 +57,7 @@ static void exact_answers_agree(void **state) {
 
 /* A piston slower than the matter behind the precursor crushes no pores; a very fast one leaves no precursor: then the
  * jump is from rest. */
-static void slow_and_fast_pistons(void **state) {
-  (void)state;
+TEST(slow_and_fast_pistons) {
   struct sph_material m = aluminium(1.275);
   struct sph_plane_shock got;
   struct error error = {0};
@@ -154,8 +152,7 @@ static void other_speeds(int points) {
   }
 }
 
-static void all_speeds(void **state) {
-  (void)state;
+TEST(all_speeds) {
   struct sph_results coarse = run(100, 200);
   for (int points = 200; points <= (run_case_full() ? 800 : 200); points *= 2) {
     const struct sph_results weak = run(points, 200);
@@ -170,8 +167,7 @@ static void all_speeds(void **state) {
 /* Shocks that close a part of the pores of other matter, and move at a tenth of the speed of elastic waves: with the
  * viscosity of those waves pumice at 150 m/s has half of its pressure. Threefold compression in a front of few
  * particles: the density carried through it is 5 % low without geometric weights. */
-static void weak_shocks_in_other_matter(void **state) {
-  (void)state;
+TEST(weak_shocks_in_other_matter) {
   static const struct {
     const char *material;
     double piston, within; /* m/s; of P */
@@ -200,8 +196,7 @@ static void weak_shocks_in_other_matter(void **state) {
 
 /* alpha_0 = 1 is the solid: one front, no distention; and a piston that is too slow for a shock leaves only the elastic
  * front. */
-static void solid_and_elastic(void **state) {
-  (void)state;
+TEST(solid_and_elastic) {
   struct sph_inputs inputs = SPH_CASE("porous-plate", "fidelity.points=100", "target.material.porosity.distention=1",
                                       "piston.speed=1 km/s");
   struct ran ran = run_case_run(&sph_engine, &inputs, 1);
@@ -217,11 +212,4 @@ static void solid_and_elastic(void **state) {
   near(elastic.precursor.speed, elastic.precursor.speed_exact, 0.02, "elastic front");
   near(elastic.precursor.pressure, elastic.precursor.pressure_exact, 0.01, "its pressure");
   assert_true(isnan(elastic.shock.speed) && isnan(elastic.shock.pressure_exact));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(exact_answers_agree), cmocka_unit_test(slow_and_fast_pistons),
-                                     cmocka_unit_test(all_speeds), cmocka_unit_test(weak_shocks_in_other_matter),
-                                     cmocka_unit_test(solid_and_elastic)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,8 +99,7 @@ static double arithmetic(void) {
   return 3 * case_basalt.elastic.shear_modulus * pow(rate * time_step / (1 - 0.06), 2);
 }
 
-static void triaxial_cell(void **state) {
-  (void)state;
+TEST(triaxial_cell) {
   static const double pressures[] = {0, 20e6, 100e6, 300e6, 1e9, 2e9, 5e9};
   const struct sph_material m = rock();
   double worst = 0;
@@ -121,8 +120,7 @@ static void triaxial_cell(void **state) {
 }
 
 /* P < 0 counts as 0; cohesion of broken rock; friction 0 leaves nothing. */
-static void without_pressure(void **state) {
-  (void)state;
+TEST(without_pressure) {
   struct sph_material m = rock();
   double bears;
   assert_true(load(&m, -2e8, 0, 0, &bears) < arithmetic()); /* 6 % raise P by K 3/4 e^2 = 72 MPa: it stays below 0 */
@@ -137,8 +135,7 @@ static void without_pressure(void **state) {
   assert_true(bears < arithmetic());
 }
 
-static void softening(void **state) {
-  (void)state;
+TEST(softening) {
   struct sph_material m = rock();
   m.melt_energy = 1e5; /* low, so that the heat adds little to the pressure */
   for (int d = 0; d < 3; d++)
@@ -151,8 +148,7 @@ static void softening(void **state) {
 }
 
 /* Intact rock without friction is von Mises' law with Y0 = sqrt(3) Y_0. */
-static void von_mises(void **state) {
-  (void)state;
+TEST(von_mises) {
   struct sph_material m = rock(), plain = case_basalt;
   double stress[2][6];
   m.pressure_strength = (struct sph_pressure_strength_material){SPH_PRESSURE_STRENGTH_LUNDBORG, 2e8, 0, 1e9, 0, 0};
@@ -173,8 +169,7 @@ static void von_mises(void **state) {
 }
 
 /* With the law, damage reduces tension but not the deviator; without the law it reduces both. */
-static void what_acts(void **state) {
-  (void)state;
+TEST(what_acts) {
   for (int law = 0; law < 2; law++)
     for (int tension = 0; tension < 2; tension++) {
       struct sph_material m = rock();
@@ -195,8 +190,7 @@ static void what_acts(void **state) {
 }
 
 /* Shear waves in broken rock are as fast as in whole rock, so the allowed time step is the same. */
-static void waves_of_broken_rock(void **state) {
-  (void)state;
+TEST(waves_of_broken_rock) {
   double step[2][2];
   for (int law = 0; law < 2; law++)
     for (int broken = 0; broken < 2; broken++) {
@@ -217,8 +211,7 @@ static void waves_of_broken_rock(void **state) {
 }
 
 /* E eps = lambda(S) - P with the law, lambda(S) - P/(1-D) without it where P > 0; lambda(S) - P in tension. */
-static void strain_of_flaws(void **state) {
-  (void)state;
+TEST(strain_of_flaws) {
   static const double pressure[2] = {5e8, -1e7}, axial[2] = {6e8, 9e7}, expected[2] = {1e8, 1e8};
   for (int law = 0; law < 2; law++)
     for (int tension = 0; tension < 2; tension++) {
@@ -250,8 +243,7 @@ static void strain_of_flaws(void **state) {
 }
 
 /* With pores the limit is that of the solid at the solid's pressure: sqrt(J2) <= Y(alpha P)/alpha of the body. */
-static void pores(void **state) {
-  (void)state;
+TEST(pores) {
   struct sph_material m = rock();
   m.palpha = (struct sph_palpha_material){.distention = 1.5,
                                           .curve = SPH_CRUSH_QUADRATIC,
@@ -280,8 +272,7 @@ static void pores(void **state) {
 }
 
 /* On only where the material has the law, in the place of von Mises; a limit below the cohesion is refused. */
-static void when_on(void **state) {
-  (void)state;
+TEST(when_on) {
   struct sph_inputs inputs = case_parameters_default().in;
   struct sph_body_physics body = {.material = case_basalt, .strength = true};
   struct sph_module_set on = sph_modules_of(&body, &inputs);
@@ -299,15 +290,4 @@ static void when_on(void **state) {
   assert_int_equal(module->check_material(&body.material, &error), STATUS_OK);
   body.material.pressure_strength.intact_limit = body.material.pressure_strength.intact_cohesion;
   assert_int_equal(module->check_material(&body.material, &error), STATUS_CONTENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(triaxial_cell),   cmocka_unit_test(without_pressure),
-      cmocka_unit_test(softening),       cmocka_unit_test(von_mises),
-      cmocka_unit_test(what_acts),       cmocka_unit_test(waves_of_broken_rock),
-      cmocka_unit_test(strain_of_flaws), cmocka_unit_test(pores),
-      cmocka_unit_test(when_on),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,8 +155,7 @@ static struct hit rods(double particles, double speed, uint64_t seed) {
   return h;
 }
 
-static void rods_exchange_speeds(void **state) {
-  (void)state;
+TEST(rods_exchange_speeds) {
   const struct hit quick = rods(SOLID_SLOW ? 300 : 1000, 100, 0);
   assert_true(quick.exchanged > 0.9); /* welded: 0.74 */
   for (int seed = 0; solid_full() && seed < 3; seed++) {
@@ -196,8 +195,7 @@ static struct hit spheres(double particles, double speed, uint64_t seed) {
   return h;
 }
 
-static void spheres_rebound(void **state) {
-  (void)state;
+TEST(spheres_rebound) {
   const struct hit quick = spheres(SOLID_SLOW ? 200 : 800, 100, 1);
   assert_true(quick.kinetic > 0.95); /* a thousand particles have a viscosity that takes some; welded: 0.6 */
   assert_true(quick.rebound > 0.85);
@@ -218,8 +216,7 @@ static void spheres_rebound(void **state) {
 /* ---- other collisions ---- */
 
 /* The one in the middle passes the blow on. */
-static void three_in_a_row(void **state) {
-  (void)state;
+TEST(three_in_a_row) {
   const struct sph_material basalt = elastic_basalt();
   const double radius = 0.01, speed = 50, gap = 1e-3;
   struct solid_case c = make(3, &basalt, 3);
@@ -242,8 +239,7 @@ static void three_in_a_row(void **state) {
 
 /* An oblique hit of unlike bodies: aluminium of another size and spacing on basalt, in both precisions. Without
  * friction the projectile keeps its spin of 0, to the roughness of the particles. */
-static void unlike_bodies(void **state) {
-  (void)state;
+TEST(unlike_bodies) {
   const struct sph_material basalt = elastic_basalt();
   const double radius = 0.02, small = 0.01, speed = 100, gap = 1e-3, aside = 0.5 * (radius + small);
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
@@ -267,8 +263,7 @@ static void unlike_bodies(void **state) {
 }
 
 /* Bodies that touch at the start lie side by side for ever. */
-static void touching_bodies_rest(void **state) {
-  (void)state;
+TEST(touching_bodies_rest) {
   const struct sph_material basalt = elastic_basalt();
   struct solid_case c = make(2, &basalt, 0);
   for (int b = 0; b < 2; b++) {
@@ -286,8 +281,7 @@ static void touching_bodies_rest(void **state) {
 }
 
 /* Two spheres in contact: the same bits on two threads, and after a restart in the middle of it. */
-static void bits_stay(void **state) {
-  (void)state;
+TEST(bits_stay) {
   const struct sph_material basalt = elastic_basalt();
   struct solid_case c[3];
   for (int k = 0; k < 3; k++) {
@@ -313,11 +307,4 @@ static void bits_stay(void **state) {
   solid_same(&c[0], &c[2]);
   for (int k = 0; k < 3; k++)
     solid_end(&c[k]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rods_exchange_speeds), cmocka_unit_test(spheres_rebound),
-                                     cmocka_unit_test(three_in_a_row),       cmocka_unit_test(unlike_bodies),
-                                     cmocka_unit_test(touching_bodies_rest), cmocka_unit_test(bits_stay)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -105,8 +105,7 @@ static struct rings collide(double epsilon, double across, bool correction) {
   return r;
 }
 
-static void rubber_rings(void **state) {
-  (void)state;
+TEST(rubber_rings) {
   const double across = SOLID_SLOW ? 3 : solid_full() ? 10 : 4;
   for (int correction = 0; correction < (solid_full() ? 2 : 1); correction++)
     for (int k = 0; k < 2; k++) {
@@ -132,9 +131,4 @@ static void rubber_rings(void **state) {
                     -0.65); /* and fly apart, at 0.765: the rest went into viscosity and the rings' vibration */
       }
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rubber_rings)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -168,8 +168,7 @@ static void judge_crack(const struct form *form, const struct front *f, double c
     assert_true(f->farthest < 1.001 * f->slab); /* 0.001: strain moves particles */
 }
 
-static void crack_speed(void **state) {
-  (void)state;
+TEST(crack_speed) {
   const double cg = 0.4 * sqrt((2.67e10 + 4 * 2.27e10 / 3) / 2700);
   assert_true(fabs(cg - 1837) < 1);
   const size_t count = solid_full() ? FORMS : QUICK;
@@ -270,8 +269,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   return r;
 }
 
-static void rates(void **state) {
-  (void)state;
+TEST(rates) {
   const double particles = SOLID_SLOW ? 3000 : solid_full() ? 50000 : 12000, rate[] = {60, 360};
   const uint64_t seeds = solid_full() ? 3 : 1;
   for (uint64_t seed = 1; seed <= seeds; seed++) {
@@ -290,9 +288,4 @@ static void rates(void **state) {
     /* "significantly larger network of cracks": half as much again, where seeds scatter by a tenth */
     assert_true(SOLID_SLOW || (r[1].cracks > 1.5 * r[0].cracks && r[1].peak > r[0].peak));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(crack_speed), cmocka_unit_test(rates)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

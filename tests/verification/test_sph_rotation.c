@@ -82,8 +82,7 @@ static double turn(bool correction, bool inside_only, double *turned) {
   return worst;
 }
 
-static void stress_turns_with_the_body(void **state) {
-  (void)state;
+TEST(stress_turns_with_the_body) {
   double angle;
   const double on = turn(true, false, &angle);
   print_message("turned by %.2f degrees: stress off by %.1e at worst with the gradient correction", angle, on);
@@ -121,8 +120,7 @@ static double spin(bool correction, double turns, double *energy_error) {
   return along / size;
 }
 
-static void spinning_sphere(void **state) {
-  (void)state;
+TEST(spinning_sphere) {
   for (int correction = 1; correction >= 0; correction--)
     for (int part = 0; part < 2; part++) { /* without the correction one turn is enough: after ten the spin is lost */
       const double turns = SOLID_SLOW ? 0.1 : part ? 10 : 1;
@@ -200,8 +198,7 @@ static void impact(bool correction, int precision) {
   solid_end(&c);
 }
 
-static void impacts(void **state) {
-  (void)state;
+TEST(impacts) {
   impact(false, SPH_DOUBLE);
   impact(true, SPH_DOUBLE);
   impact(false, SPH_FLOAT);
@@ -257,8 +254,7 @@ static struct turned turn_edges(enum sph_shape_kind kind, double w, double until
 }
 
 /* A strain made by the rotation itself grows as w, and those of its stress as w^2. */
-static void edges_turn(void **state) {
-  (void)state;
+TEST(edges_turn) {
   static const enum sph_shape_kind kinds[] = {SPH_SHAPE_CYLINDER, SPH_SHAPE_BOX};
   for (int k = 0; k < 2; k++) {
     double stress[2];
@@ -275,10 +271,4 @@ static void edges_turn(void **state) {
     }
     assert_true(fabs(stress[1] / stress[0] - 1) < 0.01);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(stress_turns_with_the_body), cmocka_unit_test(spinning_sphere),
-                                     cmocka_unit_test(impacts), cmocka_unit_test(edges_turn)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

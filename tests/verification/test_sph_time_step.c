@@ -97,8 +97,7 @@ static int scene_at_default(const struct small_scene *scene, size_t seeds) {
 #define EVEN "fidelity.graded=false", "fidelity.projectile_spacing=0.5"
 #define ICE  EVEN, "impact.mass=1 g", "stop.end_time=200 us"
 
-static void default_step_is_fine_enough(void **state) {
-  (void)state;
+TEST(default_step_is_fine_enough) {
   const size_t seeds = run_case_seeds(4, 8);
   assert_true(seeds >= 2 && seeds <= MOST_SEEDS);
   static const struct small_scene quick[] = {{"solid-ice", {"fidelity.particles=1500", ICE}},
@@ -117,9 +116,4 @@ static void default_step_is_fine_enough(void **state) {
   for (size_t k = 0; k < count; k++)
     failures += scene_at_default(&scenes[k], seeds);
   assert_int_equal(failures, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(default_step_is_fine_enough)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

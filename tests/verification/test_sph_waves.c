@@ -14,8 +14,7 @@
 
 enum polarisation { PRESSURE_WAVE, SHEAR_WAVE };
 
-static void speeds_are_as_printed(void **state) {
-  (void)state;
+TEST(speeds_are_as_printed) {
   struct sph_material m = solid_basalt();
   assert_true(fabs(sqrt(solid_young(&m) / m.density) - 4433) < 0.5);
   assert_true(fabs(sqrt((m.tillotson.A + 4 * m.elastic.shear_modulus / 3) / m.density) - 4593) < 0.5);
@@ -67,8 +66,7 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   return w;
 }
 
-static void plane_waves(void **state) {
-  (void)state;
+TEST(plane_waves) {
   static const double exact[] = {4593.3, 2899.6};
   static const char *const name[] = {"P", "S"};
   const int levels = SOLID_SLOW ? 1 : solid_full() ? 4 : 3;
@@ -143,8 +141,7 @@ static double rod_speed(const struct sph_material *m, double radius, double leng
   return low * cs;
 }
 
-static void pochhammer_is_right(void **state) {
-  (void)state;
+TEST(pochhammer_is_right) {
   /* long waves: the bar speed, and Rayleigh's correction 1 - (nu k R)^2/4 to fourth order in kR */
   struct sph_material m = solid_basalt();
   double bar = sqrt(solid_young(&m) / m.density), nu = solid_poisson(&m), kr = 2 * M_PI / 40;
@@ -228,8 +225,7 @@ static double pulse(double alpha, bool reconstruction) {
 
 /* Even without viscosity the pulse spreads: waves of few spacings are slower. Of what viscosity takes beyond that,
  * reconstructed velocities save more than a third, and with their own doubled viscosity still more than a fifth. */
-static void reconstruction_spares_a_pulse(void **state) {
-  (void)state;
+TEST(reconstruction_spares_a_pulse) {
   const double none = pulse(0, false), plain = pulse(1.5, false), same = pulse(1.5, true), usual = pulse(3, true);
   print_message(
       "half-sine of 8 spacings keeps of its peak over 30: %.3f without viscosity, %.3f with the usual one, with "
@@ -240,8 +236,7 @@ static void reconstruction_spares_a_pulse(void **state) {
   assert_true(none - usual < 4 * (none - plain) / 5);
 }
 
-static void bar_wave(void **state) {
-  (void)state;
+TEST(bar_wave) {
   struct sph_material m = solid_basalt();
   const double exact = rod_speed(&m, 1, 4), bar = sqrt(solid_young(&m) / m.density);
   const int levels = SOLID_SLOW ? 1 : solid_full() ? 4 : 3;
@@ -269,13 +264,4 @@ static void bar_wave(void **state) {
       assert_true(order > 1 && order < 1.6);
     assert_true(fabs(limit / exact - 1) < 0.01);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(speeds_are_as_printed),         cmocka_unit_test(plane_waves),
-      cmocka_unit_test(pochhammer_is_right),           cmocka_unit_test(bar_wave),
-      cmocka_unit_test(reconstruction_spares_a_pulse),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }
