@@ -117,20 +117,18 @@ static void hear_run(const struct engine_kind *kind, void *run, const struct out
       fprintf(heard[PINNED].file, " %a %a %a", f->position[k], f->velocity[k], f->spin[k]);
   }
   const size_t size = kind->system_size(run);
-  void *bytes = calloc(size, 1);
+  OWNED void *bytes = calloc(size, 1);
   assert_non_null(bytes);
   kind->save_system(run, bytes);
   fwrite(bytes, 1, size, heard[PINNED].file);
-  free(bytes);
   fprintf(heard[PINNED].file, "%a %a\n", kind->progress(run), kind->time(run));
 }
 
 /* What `clast explain` and `clast plan` say before a run. */
 static void hear_words(const struct scene *scene) {
-  char *text = scene->kind->describe(scene->inputs, true);
+  OWNED char *text = scene->kind->describe(scene->inputs, true);
   assert_non_null(text);
   fputs(text, heard[SAID].file);
-  free(text);
   condition_before(scene->kind->conditions, scene->inputs, heard[SAID].file);
   fprintf(heard[SAID].file, "%zu %.9g\n", scene->kind->memory(scene->inputs), scene->kind->work(scene->inputs));
 }
@@ -143,7 +141,7 @@ static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot
     struct sph_results sph;
   } results;
   struct outcome outcome;
-  struct fragment *fragments = NULL;
+  OWNED struct fragment *fragments = NULL;
   size_t count = 0;
   void *run = NULL;
   bool finished = false;
@@ -158,7 +156,6 @@ static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot
   assert_int_equal(scene->kind->finish(run, &outcome, &results, &fragments, &count, error), STATUS_OK);
   hear_words(scene);
   hear_run(scene->kind, run, &outcome, &results, fragments, count);
-  free(fragments);
   scene->kind->free(run);
   return true;
 }
@@ -186,7 +183,7 @@ TEST(every_scene_runs) {
       fail_msg("give %s a smallest size", scene_builtin_name(k));
   }
   for (size_t k = 0; k < SMALLEST; k++) {
-    struct scene *scene = small_scene(k);
+    SCENE scene = small_scene(k);
     struct error error = {0};
     if (scene_check(scene, &error))
       fail_msg("%s: %s", smallest[k].scene, error.message);
@@ -194,19 +191,17 @@ TEST(every_scene_runs) {
     if (!runs(scene, 400, "smallest.h5", &error))
       fail_msg("%s: %s", smallest[k].scene, error.message);
     pin(smallest[k].scene, "-");
-    scene_free(scene);
   }
   remove("smallest.h5");
 }
 
 static bool chosen(const struct scene *scene, const char *path, const char *text) {
-  struct scene *other = scene_copy(scene);
+  SCENE other = scene_copy(scene);
   struct error error = {0};
   const bool ran = scene_set_text(other, path, text, &error) == STATUS_OK && scene_check(other, &error) == STATUS_OK &&
                    runs(other, 5, NULL, &error);
   if (!ran)
     fprintf(heard[SAID].file, "%s\n", error.message);
-  scene_free(other);
   return ran;
 }
 
@@ -217,7 +212,7 @@ TEST(every_choice_runs) {
   for (size_t k = 0; k < SMALLEST; k++) {
     if (again(smallest[k].scene, false))
       continue;
-    struct scene *scene = small_scene(k);
+    SCENE scene = small_scene(k);
     for (size_t i = 0; i < scene->kind->inputs->count; i++) {
       const struct field *row = &scene->kind->inputs->rows[i];
       const char *const *choices = row->kind == FIELD_CHOICE || row->kind == FIELD_TEXT ? row->choices
@@ -230,7 +225,6 @@ TEST(every_choice_runs) {
         ran += chosen(scene, row->path, *choices);
       pin(smallest[k].scene, row->path);
     }
-    scene_free(scene);
   }
   print_message("%zu choices of %d scenes\n", ran, SMALLEST);
   assert_true(ran > (SANITIZED ? 300 : 500));
@@ -240,7 +234,7 @@ TEST(every_choice_runs) {
 }
 
 static void tell(const struct scene *scene, const char *path, double number) {
-  struct scene *other = scene_copy(scene);
+  SCENE other = scene_copy(scene);
   struct error error = {0};
   const struct field_value value = {.kind = FIELD_REAL, .number = number};
   if (scene_set(other, path, &value, &error) || scene_check(other, &error)) {
@@ -251,7 +245,6 @@ static void tell(const struct scene *scene, const char *path, double number) {
     fwrite(identity, 1, sizeof identity, heard[PINNED].file);
     hear_words(other);
   }
-  scene_free(other);
 }
 
 /* Every number that a scene uses: below and above its own value, far off, zero and off. Nothing is run. What the
@@ -260,7 +253,7 @@ TEST(every_number_is_told) {
   for (size_t k = 0; k < SMALLEST; k++) {
     if (!smallest[k].numbers || again(smallest[k].scene, true))
       continue;
-    struct scene *scene = small_scene(k);
+    SCENE scene = small_scene(k);
     const struct field_table *inputs = scene->kind->inputs;
     for (size_t i = 0; i < inputs->count; i++) {
       struct field_value value;
@@ -275,7 +268,6 @@ TEST(every_number_is_told) {
         tell(scene, inputs->rows[i].path, tried[t]);
       pin(smallest[k].scene, inputs->rows[i].path);
     }
-    scene_free(scene);
   }
 }
 
@@ -401,18 +393,16 @@ struct acting {
 };
 
 static void try_value(struct acting *a, const struct field *row, const char *text, double number) {
-  struct scene *other = scene_copy(a->scene);
+  SCENE other = scene_copy(a->scene);
   struct error error = {0};
   const struct field_value value = {.kind = FIELD_REAL, .number = number};
   size_t size;
   if (a->other == 0 && (text ? scene_set_text(other, row->path, text, &error)
                              : scene_set(other, row->path, &value, &error)) == STATUS_OK) {
-    char *bits = bits_of(other, &size);
+    OWNED char *bits = bits_of(other, &size);
     a->accepted += bits != NULL;
     a->other += bits && (size != a->own_size || memcmp(bits, a->own, size) != 0);
-    free(bits);
   }
-  scene_free(other);
 }
 
 static void try_values(struct acting *a, const struct field *row) {
@@ -459,9 +449,9 @@ TEST(every_input_acts) {
     if (!getenv("CLAST_FULL") && strcmp(smallest[k].scene, "block-impact") != 0 &&
         strcmp(smallest[k].scene, "disruption") != 0)
       continue;
-    struct scene *scene = small_scene(k);
+    SCENE scene = small_scene(k);
     struct acting a = {.scene = scene};
-    char *own = bits_of(scene, &a.own_size);
+    OWNED char *own = bits_of(scene, &a.own_size);
     a.own = own;
     for (size_t i = 0; i < scene->kind->inputs->count; i++) {
       const struct field *row = &scene->kind->inputs->rows[i];
@@ -475,8 +465,6 @@ TEST(every_input_acts) {
       print_message("%s: %s changes nothing\n", smallest[k].scene, row->path);
       wrong++;
     }
-    free(own);
-    scene_free(scene);
   }
   print_message("%zu inputs act\n", acted);
   assert_int_equal(wrong, 0);
@@ -496,9 +484,8 @@ TEST(no_run_leaves_memory) {
   if (SANITIZED) /* they see leaks by themselves, and mallinfo2() knows nothing of their allocator */
     skip();
   for (size_t k = 0; k < SMALLEST; k++) {
-    struct scene *scene = small_scene(k);
+    SCENE scene = small_scene(k);
     pinned_frees(smallest[k].scene, begin_and_end, scene);
-    scene_free(scene);
   }
 }
 

@@ -167,14 +167,13 @@ TEST(drift_within_a_wide_bound_is_flagged) {
   struct dem_run *run = disc("fidelity.energy_bound=50 %");
   struct outcome outcome;
   struct dem_results results;
-  struct fragment *fragments;
+  OWNED struct fragment *fragments = NULL;
   size_t count;
   struct error error;
   run->state.frame.closed_start *= 1.05;
   frame_advance(&run->frame, LATE);
   assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &count, &error), STATUS_OK);
   assert_string_equal(outcome.warnings, "drift"); /* the run goes on: it is not cut */
-  free(fragments);
   dem_run_free(run);
 }
 

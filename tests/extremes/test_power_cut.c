@@ -240,7 +240,7 @@ TEST(fields_are_kept_before_their_row) {
 }
 
 static void look_at_restart(size_t op) {
-  unsigned char *bytes = NULL;
+  OWNED unsigned char *bytes = NULL;
   size_t size = 0;
   const int64_t least = promised("restart", op);
   const status code = file_read("power-after/run.restart", "restart file", &bytes, &size, NULL);
@@ -251,7 +251,6 @@ static void look_at_restart(size_t op) {
     for (size_t i = 0; i < size; i++)
       assert_int_equal(bytes[i], bytes[0]);
   }
-  free(bytes);
 }
 
 /* Each restart file replaces the one before. */

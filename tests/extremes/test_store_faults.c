@@ -106,10 +106,8 @@ TEST(killed_writer_loses_at_most_its_batch) {
   OK(fill(path, runs, &error));
   assert_near(whole(path), (double)(M * K * runs), 0);
   OK(fill(fixture_path(reference, "unkilled"), runs, &error));
-  char *a = dump(path), *b = dump(reference);
+  OWNED char *a = dump(path), *b = dump(reference);
   assert_string_equal(a, b);
-  free(a);
-  free(b);
 }
 
 /* A writer meets a full disk; then the same command with enough space. */

@@ -87,7 +87,7 @@ static bool check_is_content(const char *path) {
 TEST(every_flipped_bit_is_found) {
   char path[64];
   struct store_file file = whole_store(path);
-  char *whole = content(path);
+  OWNED char *whole = content(path);
   const int flips = getenv("CLAST_FULL") ? 80 * FLIPS : FLIPS;
   int missed = 0, harmless = 0;
   assert_true(check_is_content(path));
@@ -97,19 +97,17 @@ TEST(every_flipped_bit_is_found) {
     file.bytes[at] ^= bit;
     store_file_write(path, &file);
     if (check_is_content(path)) {
-      char *text = content(path);
+      OWNED char *text = content(path);
       const bool same = strcmp(text, whole) == 0;
       if (!same)
         print_error("bit %d of byte %zu changes a run, and check finds nothing\n", bit, at);
       missed += !same;
       harmless += same;
-      free(text);
     }
     file.bytes[at] ^= bit;
   }
   print_message("%d of %d flips found; the others changed no run\n", flips - harmless - missed, flips);
   assert_int_equal(missed, 0);
-  free(whole);
   free(file.bytes);
 }
 

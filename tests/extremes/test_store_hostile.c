@@ -369,7 +369,7 @@ static void spoil(const char *path, uint64_t round) {
 TEST(corrupt_pages_are_errors) {
   char path[64];
   populated(path, "hostile-pages");
-  char *whole = dump(path);
+  OWNED char *whole = dump(path);
   int found_whole = 0;
   for (uint64_t round = FIRST_ROUND; round < ROUNDS; round++) {
     char found[8000] = "";
@@ -385,9 +385,8 @@ TEST(corrupt_pages_are_errors) {
     if (merged == STATUS_OK && checked != STATUS_OK)
       fail_msg("round %d: merged in spite of: %s", (int)round, found);
     if (checked == STATUS_OK) {
-      char *text = dump(path);
+      OWNED char *text = dump(path);
       assert_string_equal(text, whole);
-      free(text);
       found_whole++;
     }
     if (merged != STATUS_OK) {
@@ -399,7 +398,6 @@ TEST(corrupt_pages_are_errors) {
     if (store_open_writer(path, &store, NULL, 0, &error) == STATUS_OK)
       store_close(store, NULL);
   }
-  free(whole);
   assert_in_range(found_whole, 0, 10);
 }
 

@@ -90,7 +90,7 @@ static status play_farm(struct play *play, struct scheduler *scheduler, struct e
     enum play_fate fate = play->fate ? play->fate(seed, 0) : PLAY_RUN;
     struct farm_report report =
         {.id = out[pick].task.id, .ending = FARM_DONE, .wall_s = 0.01, .cpu_s = 0.01, .host = "here", .message = ""};
-    uint8_t *bytes = NULL;
+    OWNED uint8_t *bytes = NULL;
     if (fate == PLAY_CRASH) {
       report.ending = FARM_CRASHED;
       report.signal = 11;
@@ -111,7 +111,6 @@ static status play_farm(struct play *play, struct scheduler *scheduler, struct e
     if (code == STATUS_OK)
       code = manager.report(manager.context, &report, error);
     play->reports++;
-    free(bytes);
   }
   while (count > 0)
     free(out[--count].bytes);

@@ -1,6 +1,6 @@
-/* cmocka, and what it needs before it. A test is `TEST(name) { ... }`; a program runs the tests of its file in the order
- * in which they stand there. A file whose tests need something before or after them defines CHECK_OWN_MAIN first and a
- * main() that calls check_run(). */
+/* cmocka, and what it needs before it. A test is `TEST(name) { ... }`; a program runs the tests of its file in the
+ * order in which they stand there. A file whose tests need something before or after them defines CHECK_OWN_MAIN first
+ * and a main() that calls check_run(). */
 #pragma once
 
 #include <setjmp.h>
@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
+#include "tests/support/owned.h"
 
 static struct CMUnitTest check_tests[100];
 static size_t check_count;

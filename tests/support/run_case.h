@@ -21,7 +21,7 @@ union run_case_inputs {
 
 /* `overrides`: "path=text" items, closed by NULL; NULL for none. */
 UNUSED static union run_case_inputs run_case(const char *scene_name, const char *const *overrides) {
-  struct scene *scene = NULL;
+  SCENE scene = NULL;
   struct error error = {0};
   union run_case_inputs inputs;
   if (scene_load(scene_name, NULL, &scene, &error))
@@ -36,7 +36,6 @@ UNUSED static union run_case_inputs run_case(const char *scene_name, const char 
   if (scene_check(scene, &error))
     fail_msg("%s: %s", scene_name, error.message);
   memcpy(&inputs, scene->inputs, scene->kind->inputs->size);
-  scene_free(scene);
   return inputs;
 }
 #define DEM_CASE(name, ...) run_case(name, (const char *const[]){__VA_ARGS__, NULL}).dem

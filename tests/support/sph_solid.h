@@ -240,18 +240,15 @@ UNUSED static unsigned char *solid_state(const struct sph_system *system, size_t
 /* Makes the system of `c` again and gives it the state of another one, as a restart does. */
 UNUSED static void solid_resume(struct solid_case *c, const struct sph_system *from) {
   size_t size;
-  unsigned char *state = solid_state(from, &size);
+  OWNED unsigned char *state = solid_state(from, &size);
   solid_start(c);
   assert_true(sph_system_state_load(c->system, state, size));
-  free(state);
 }
 
 /* Fails unless both systems have the same state, bit by bit. */
 UNUSED static void solid_same(const struct solid_case *a, const struct solid_case *b) {
   size_t size, size_b;
-  unsigned char *state = solid_state(a->system, &size), *other = solid_state(b->system, &size_b);
+  OWNED unsigned char *state = solid_state(a->system, &size), *other = solid_state(b->system, &size_b);
   assert_int_equal(size, size_b);
   assert_memory_equal(state, other, size);
-  free(state);
-  free(other);
 }

@@ -189,7 +189,7 @@ static const char *const fixture_axes[] = {"material.m", "material.k"};
 static inline status fixture_populate(struct store *store, int points_m, int points_k, int64_t replicates,
                                       bool by_replicate, struct error *error) {
   struct fixture_inputs inputs;
-  struct fixture_run *f = malloc(sizeof *f);
+  OWNED struct fixture_run *f = malloc(sizeof *f);
   int64_t campaign = 0, session = 0, point = 0;
   status result = store_add_campaign(store, "made-up", "name: made-up", "{}", &campaign, error);
   if (result == STATUS_OK)
@@ -207,7 +207,6 @@ static inline status fixture_populate(struct store *store, int points_m, int poi
     }
   if (result == STATUS_OK)
     result = store_end_session(store, session, "ok", error);
-  free(f);
   return result;
 }
 

@@ -125,17 +125,16 @@ TEST(defaults_and_units) {
 }
 
 TEST(every_kind_of_axis) {
-  struct campaign *campaign = good(HEAD
-                                   "design: {kind: sobol, points: 16, seed: 3}\nvary:\n"
-                                   "  threshold.strain: {log: [1 %, 8 %], n: 4}\n"
-                                   "  threshold.angle: {normal: {mean: 4 deg, sd: 1 deg}, truncated: [1 deg, 7 deg]}\n"
-                                   "  grain.young_modulus: {lognormal: {median: 1 GPa, sigma: 0.1}}\n"
-                                   "  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5, offset: 1 MPa}\n"
-                                   "  contact.friction: {uniform: [0, 0.8]}\n"
-                                   "  contact.tangential_damping: {log_uniform: [1e3 1/s, 1e5 1/s]}\n"
-                                   "  contact.law: [conservative, printed]\n"
-                                   "  grain.disorder: {from: 0, to: 1, n: 5}\n"
-                                   "  contact.bonded: {linked: contact.law, values: [true, false]}\n");
+  CAMPAIGN campaign = good(HEAD "design: {kind: sobol, points: 16, seed: 3}\nvary:\n"
+                                "  threshold.strain: {log: [1 %, 8 %], n: 4}\n"
+                                "  threshold.angle: {normal: {mean: 4 deg, sd: 1 deg}, truncated: [1 deg, 7 deg]}\n"
+                                "  grain.young_modulus: {lognormal: {median: 1 GPa, sigma: 0.1}}\n"
+                                "  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5, offset: 1 MPa}\n"
+                                "  contact.friction: {uniform: [0, 0.8]}\n"
+                                "  contact.tangential_damping: {log_uniform: [1e3 1/s, 1e5 1/s]}\n"
+                                "  contact.law: [conservative, printed]\n"
+                                "  grain.disorder: {from: 0, to: 1, n: 5}\n"
+                                "  contact.bonded: {linked: contact.law, values: [true, false]}\n");
   assert_int_equal(campaign->axis_count, 9);
   assert_int_equal(points_of(campaign), 16);
   assert_int_equal(campaign->axes[0].level_count, 4);
@@ -150,7 +149,6 @@ TEST(every_kind_of_axis) {
   assert_int_equal(campaign->axes[3].linked, 2);
   assert_true(campaign->axes[3].b == 1e6);
   assert_int_equal(campaign->axes[8].level_count, 2);
-  campaign_free(campaign);
 }
 
 /* Values of axes are checked where a point is made: the point's scene is freed then (the leak check sees it). */
@@ -172,27 +170,24 @@ TEST(values_that_do_not_fit_make_no_point) {
     char text[200];
     struct error error = {0};
     snprintf(text, sizeof text, HEAD "%s", cases[i].vary);
-    struct campaign *campaign = good(text);
+    CAMPAIGN campaign = good(text);
     assert_null(campaign_point_scene(campaign, cases[i].values, &error));
     assert_int_equal(error.status, STATUS_CONTENT);
     if (!strstr(error.message, cases[i].expected))
       fail_msg("%s", error.message);
-    campaign_free(campaign);
   }
 }
 
 TEST(independent_seeds_follow_the_point) {
-  struct campaign *campaign = good(HEAD "seeds: {first: 10, independent: true}\nvary: {strain: [1 %, 3 %]}\n");
+  CAMPAIGN campaign = good(HEAD "seeds: {first: 10, independent: true}\nvary: {strain: [1 %, 3 %]}\n");
   struct error error;
-  struct scene *a = campaign_point_scene(campaign, &campaign->axes[0].levels[0], &error);
-  struct scene *b = campaign_point_scene(campaign, &campaign->axes[0].levels[1], &error);
+  SCENE a = campaign_point_scene(campaign, &campaign->axes[0].levels[0], &error);
+  SCENE b = campaign_point_scene(campaign, &campaign->axes[0].levels[1], &error);
   assert_true(campaign_seed(campaign, a, 0) != campaign_seed(campaign, b, 0));
   assert_true(campaign_seed(campaign, a, 0) != campaign_seed(campaign, a, 1));
   assert_true(campaign_seed(campaign, a, 3) == campaign_seed(campaign, a, 3));
   assert_true(campaign_seed(campaign, a, 0) >> 63 == 0);
   assert_true(campaign->independent_given);
-  scene_free(a), scene_free(b);
-  campaign_free(campaign);
 }
 
 TEST(equal_values_are_one_point) {
@@ -209,13 +204,11 @@ TEST(equal_values_are_one_point) {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[300];
     snprintf(text, sizeof text, HEAD "%s", cases[i].text);
-    struct campaign *campaign = good(text);
+    CAMPAIGN campaign = good(text);
     assert_int_equal(points_of(campaign), cases[i].points);
-    campaign_free(campaign);
   }
-  struct campaign *campaign = good(HEAD "vary: {strain: [7 %, 1 %, 7.0 %, 3 %]}\n");
+  CAMPAIGN campaign = good(HEAD "vary: {strain: [7 %, 1 %, 7.0 %, 3 %]}\n");
   assert_true(campaign->axes[0].levels[0].number == 0.07 && campaign->axes[0].levels[2].number == 0.03);
-  campaign_free(campaign);
 }
 
 /* Two names of one input are a slip; documents of stores may have them, the last one counts. */
@@ -370,9 +363,8 @@ TEST(examples_are_ready_to_run) {
     assert_true(plan.points >= 3 && plan.runs_least >= 12 && plan.memory_most > 1e5 && !plan.store_exists);
     assert_int_equal(plan.runs_there, 0);
     assert_true(isnan(plan.run_s_mean));
-    char *json = plan_print_json(campaign, &plan, 2);
+    OWNED char *json = plan_print_json(campaign, &plan, 2);
     assert_non_null(strstr(json, "\"run_s_mean\": null"));
-    free(json);
     plan_clear(&plan);
     campaign_free(campaign);
     seen++;
@@ -385,21 +377,20 @@ TEST(examples_are_ready_to_run) {
 TEST(stored_rules_of_seeds_are_read) {
   static const char text[] = "name: x\nscene: disc-explosion\nquantity: energy_input\n"
                              "seeds: {until: {half_width: 5, minimum: 10}, max: 20}\n";
-  struct campaign *campaign = NULL;
+  CAMPAIGN campaign = NULL;
   struct error error = {0};
   assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "ends no point before 41 runs"));
   assert_non_null(strstr(error.message, "half_width"));
   assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
   assert_true(campaign->maximum == 20 && campaign->until_half_width == 5);
-  campaign_free(campaign);
 }
 
 /* Documents and scenes of stores from before units were required. */
 TEST(stored_numbers_are_si) {
   static const char text[] = "name: x\nscene: disc-explosion\nset: {threshold.angle: 0.1}\n"
                              "vary: {threshold.strain: [0.02, 3 %]}\nlimits: {time: 60}\n";
-  struct campaign *campaign = NULL;
+  CAMPAIGN campaign = NULL;
   struct error error = {0};
   assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
   for (size_t i = 0; i < 3; i++)
@@ -408,8 +399,8 @@ TEST(stored_numbers_are_si) {
   assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
   assert_true(campaign->axes[0].levels[0].number == 0.02 && campaign->time_limit == 60);
 
-  char *json = scene_json(campaign->scene); /* SI numbers without unit, as in every store */
-  struct scene *again = NULL;
+  OWNED char *json = scene_json(campaign->scene); /* SI numbers without unit, as in every store */
+  SCENE again = NULL;
   assert_non_null(json);
   assert_int_equal(scene_parse("t", json, &again, &error), STATUS_CONTENT);
   assert_int_equal(scene_parse_json("t", json, &again, &error), STATUS_OK);
@@ -417,15 +408,12 @@ TEST(stored_numbers_are_si) {
   scene_identity(campaign->scene, 1, first);
   scene_identity(again, 1, second);
   assert_memory_equal(first, second, sizeof first);
-  scene_free(again);
-  free(json);
-  campaign_free(campaign);
 }
 
 static void axis_text(const char *vary, const char *expected) {
   char text[400], *words = NULL;
   size_t size = 0;
-  struct campaign *campaign = NULL;
+  CAMPAIGN campaign = NULL;
   struct error error = {0};
   snprintf(text, sizeof text, "name: x\nscene: disc-explosion\nvary: {%s}\ndesign: {kind: random, points: 4}\n", vary);
   if (campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error))
@@ -435,7 +423,6 @@ static void axis_text(const char *vary, const char *expected) {
   fclose(out);
   assert_string_equal(words, expected);
   free(words);
-  campaign_free(campaign);
 }
 
 TEST(axes_are_shown_with_units) {

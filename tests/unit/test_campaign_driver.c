@@ -27,7 +27,7 @@ static char *complete(const struct campaign *campaign, const char *path, int slo
 }
 
 TEST(same_bits_whatever_the_slots) {
-  struct campaign *campaign = play_campaign(3, 2, 5);
+  CAMPAIGN campaign = play_campaign(3, 2, 5);
   char *one = complete(campaign, in("one.db"), 1, 0), *three = complete(campaign, in("three.db"), 3, 1);
   char *many = complete(campaign, in("many.db"), 20, 2);
   assert_true(strlen(one) > 1000);
@@ -56,12 +56,11 @@ TEST(same_bits_whatever_the_slots) {
   assert_int_equal(summary.runs_reused, 30);
   assert_int_equal(summary.points_done, 6);
   free(again.says), free(pieces), free(one), free(three), free(many);
-  campaign_free(campaign);
 }
 
 TEST(killed_at_random_instants) {
-  struct campaign *campaign = play_campaign(2, 2, 40);
-  char *whole = complete(campaign, in("whole.db"), 2, 0);
+  CAMPAIGN campaign = play_campaign(2, 2, 40);
+  OWNED char *whole = complete(campaign, in("whole.db"), 2, 0);
   const char *path = in("killed.db");
   for (uint64_t k = 0; k < 6; k++) {
     pid_t child = fork();
@@ -75,10 +74,8 @@ TEST(killed_at_random_instants) {
     kill(child, SIGKILL);
     assert_int_equal(waitpid(child, NULL, 0), child);
   }
-  char *mended = complete(campaign, path, 3, 5);
+  OWNED char *mended = complete(campaign, path, 3, 5);
   assert_string_equal(whole, mended);
-  free(whole), free(mended);
-  campaign_free(campaign);
 }
 
 TEST(growing_campaigns_repeat_nothing) {
@@ -108,7 +105,7 @@ TEST(growing_campaigns_repeat_nothing) {
 }
 
 TEST(a_rule_gives_the_same_prefix_whatever_the_slots) {
-  struct campaign *campaign = play_campaign(2, 1, 0);
+  CAMPAIGN campaign = play_campaign(2, 1, 0);
   campaign->until_half_width = 0.003;
   campaign->maximum = 120;
   const char *one = in("until-one.db"), *many = in("until-many.db");
@@ -129,7 +126,6 @@ TEST(a_rule_gives_the_same_prefix_whatever_the_slots) {
   char *c = complete(campaign, many, 5, 4), *d = complete(campaign, one, 1, 0);
   assert_string_equal(c, d);
   free(c), free(d), free(serial.says), free(wide.says);
-  campaign_free(campaign);
 }
 
 static enum play_fate crash_three(uint64_t seed, int attempt) {
@@ -148,7 +144,7 @@ static enum play_fate crash_all(uint64_t seed, int attempt) {
 TEST(attempts_are_kept_and_repeated_up_to_the_limit) {
   const char *path = in("attempts.db");
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(2, 1, 6);
+  CAMPAIGN campaign = play_campaign(2, 1, 6);
   struct play crashing = {.slots = 2, .fate = crash_three}, good = {.slots = 2};
   assert_int_equal(play_once(&crashing, campaign, path, &summary), STATUS_OK);
   assert_int_equal(summary.attempts_failed, 4); /* two points, two attempts */
@@ -175,7 +171,6 @@ TEST(attempts_are_kept_and_repeated_up_to_the_limit) {
   assert_int_equal(play_once(&good, campaign, slow, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 2);
   free(crashing.says), free(good.says), free(slowly.says);
-  campaign_free(campaign);
 }
 
 static enum play_fate lose_three(uint64_t seed, int attempt) {
@@ -187,7 +182,7 @@ static enum play_fate lose_three(uint64_t seed, int attempt) {
 TEST(lost_runs_are_never_given_up) {
   const char *path = in("lost.db");
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(2, 1, 6);
+  CAMPAIGN campaign = play_campaign(2, 1, 6);
   struct play losing = {.slots = 2, .fate = lose_three}, good = {.slots = 2};
   for (int i = 0; i < 3; i++) {
     assert_int_equal(play_once(&losing, campaign, path, &summary), STATUS_OK);
@@ -204,13 +199,12 @@ TEST(lost_runs_are_never_given_up) {
   char *whole = complete(campaign, in("unlost.db"), 2, 0), *mended = play_dump(path);
   assert_string_equal(whole, mended);
   free(whole), free(mended), free(losing.says), free(good.says);
-  campaign_free(campaign);
 }
 
 TEST(stops_when_too_many_of_the_first_fail) {
   const char *path = in("failing.db");
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(3, 3, 10);
+  CAMPAIGN campaign = play_campaign(3, 3, 10);
   struct play crashing = {.slots = 2, .fate = crash_all};
   assert_int_equal(play_once(&crashing, campaign, path, &summary), STATUS_FAILED_RUNS);
   assert_int_equal(summary.runs_failed, 20);
@@ -219,14 +213,12 @@ TEST(stops_when_too_many_of_the_first_fail) {
   assert_int_equal(play_once(&crashing, campaign, path, &summary), STATUS_OK);
   assert_int_equal(summary.runs_failed, 90);
   free(crashing.says);
-  campaign_free(campaign);
 }
 
 TEST(failed_states_are_results) {
   const char *path = in("states.db");
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(1, 1,
-                                            60); /* seeds 1..60: 49 not finite, 13 invalid, 9 19 29 39 59 at end time */
+  CAMPAIGN campaign = play_campaign(1, 1, 60); /* seeds 1..60: 49 not finite, 13 invalid, 9 19 29 39 59 at end time */
   struct play play = {.slots = 2};
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 60);
@@ -237,7 +229,6 @@ TEST(failed_states_are_results) {
   assert_int_equal(summary.runs_done, 0);
   assert_int_equal(summary.runs_failed, 2);
   free(play.says);
-  campaign_free(campaign);
 }
 
 static int files_in(const char *path) {
@@ -259,7 +250,7 @@ TEST(fields_are_kept_as_asked) {
   const char *path = in("fields.db");
   char kept[128];
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(2, 1, 8);
+  CAMPAIGN campaign = play_campaign(2, 1, 8);
   struct play play = {.slots = 3, .order = 4};
   snprintf(kept, sizeof kept, "%s/fields-fields", folder);
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
@@ -283,7 +274,6 @@ TEST(fields_are_kept_as_asked) {
     fail_msg("%s", error.message);
   store_close(store, NULL);
   free(play.says);
-  campaign_free(campaign);
 }
 
 static int fields_left; /* so many fields files can be written */
@@ -298,7 +288,7 @@ TEST(fields_that_cannot_be_written_stop_the_campaign) {
   snprintf(path, sizeof path, "%s", in("full.db"));
   snprintf(kept, sizeof kept, "%s/full-fields", folder);
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(2, 1, 8);
+  CAMPAIGN campaign = play_campaign(2, 1, 8);
   struct play play = {.slots = 3};
   toy_engine.write_snapshot = write_few_fields;
   campaign->keep = CAMPAIGN_KEEP_ALL;
@@ -318,7 +308,6 @@ TEST(fields_that_cannot_be_written_stop_the_campaign) {
   assert_int_equal(files_in(kept), 16);
   toy_engine.write_snapshot = toy_write_fields;
   free(play.says);
-  campaign_free(campaign);
 }
 
 /* The last line of progress: every run that the rule wanted is done. */
@@ -326,7 +315,7 @@ TEST(the_total_of_a_rule_is_met) {
   char *text = NULL;
   size_t size = 0;
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(3, 1, 0);
+  CAMPAIGN campaign = play_campaign(3, 1, 0);
   campaign->until_half_width = 0.003;
   campaign->maximum = 120;
   for (int wide = 0; wide < 2; wide++) {
@@ -344,7 +333,6 @@ TEST(the_total_of_a_rule_is_met) {
     free(text);
     free(play.says);
   }
-  campaign_free(campaign);
 }
 
 /* Every line of progress tells all runs, also those of points that nobody has met yet. */
@@ -353,7 +341,7 @@ TEST(the_total_counts_points_not_met) {
   size_t size = 0;
   int lines = 0;
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(30, 1, 4);
+  CAMPAIGN campaign = play_campaign(30, 1, 4);
   FILE *out = open_memstream(&text, &size);
   struct play play = {.slots = 2, .order = 3, .progress = progress_create(out, PROGRESS_PLAIN, false, 0)};
   assert_int_equal(play_once(&play, campaign, in("unmet.db"), &summary), STATUS_OK);
@@ -365,51 +353,45 @@ TEST(the_total_counts_points_not_met) {
   assert_int_equal(lines, 21); /* one for each 5 %, and the last one */
   free(text);
   free(play.says);
-  campaign_free(campaign);
 }
 
 TEST(equal_points_are_computed_once) {
   const char *path = in("equal.db");
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(3, 2, 2);
+  CAMPAIGN campaign = play_campaign(3, 2, 2);
   struct play play = {.slots = 3};
   campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_RANDOM, .points = 200, .seed = 5};
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(summary.points, 6);
   assert_int_equal(summary.runs_done, 12);
   free(play.says);
-  campaign_free(campaign);
 }
 
 TEST(broken_answers_are_refused) {
-  struct campaign *campaign = play_campaign(1, 1, 1);
+  CAMPAIGN campaign = play_campaign(1, 1, 1);
   struct run_request request = {&toy_engine, campaign->scene->inputs, 5, NULL, NULL};
   struct run_result result;
   struct error error = {0};
   size_t task_size, size;
-  uint8_t *task = run_encode_task(&request, &task_size), *bytes = NULL;
+  OWNED uint8_t *task = run_encode_task(&request, &task_size), *bytes = NULL;
   assert_int_equal(run_work(task, task_size, &bytes, &size, &error), STATUS_OK);
   assert_int_equal(run_decode_result(&toy_engine, bytes, size, &result, &error), STATUS_OK);
   assert_int_equal(result.fragment_count, 25);
   assert_int_equal(result.estimate_count, ESTIMATES_COUNT);
   run_result_clear(&result);
   for (size_t cut = 0; cut < size; cut += cut < 200 ? 1 : 97) {
-    uint8_t *part = malloc(cut + 1); /* an exact copy, so that a sanitizer detects any read beyond it */
+    OWNED uint8_t *part = malloc(cut + 1); /* an exact copy, so that a sanitizer detects any read beyond it */
     memcpy(part, bytes, cut);
     part = realloc(part, cut ? cut : 1);
     assert_int_equal(run_decode_result(&toy_engine, part, cut, &result, &error), STATUS_INTERNAL);
-    free(part);
   }
   for (size_t cut = 0; cut < task_size; cut++) {
     uint8_t *answer = NULL;
     size_t answer_size;
-    uint8_t *part = malloc(cut ? cut : 1);
+    OWNED uint8_t *part = malloc(cut ? cut : 1);
     memcpy(part, task, cut);
     assert_int_equal(run_work(part, cut, &answer, &answer_size, &error), STATUS_INTERNAL);
-    free(part);
   }
-  free(task), free(bytes);
-  campaign_free(campaign);
 }
 
 int main(void) {

@@ -45,7 +45,7 @@ TEST(a_rule_tells_how_narrow_its_interval_is) {
 }
 
 TEST(a_log_gets_a_line_per_twentieth_or_minute) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   assert_int_equal(progress_style_of(tmpfile()), PROGRESS_PLAIN);
@@ -76,12 +76,11 @@ TEST(a_log_gets_a_line_per_twentieth_or_minute) {
   for (size_t i = 0; i < size; i++)
     lines += text[i] == '\n';
   assert_int_equal(lines, 3);
-  free(text);
 }
 
 /* A study runs one campaign after the other: each tells its progress, in lines two seconds apart. */
 TEST(a_log_tells_of_each_part_of_a_study) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   struct progress *progress = progress_create(out, PROGRESS_PLAIN, false, 0);
@@ -97,11 +96,10 @@ TEST(a_log_tells_of_each_part_of_a_study) {
   for (char *c = text; *c; c++)
     lines += *c == '\n';
   assert_in_range(lines, 3 * 4, 3 * 5);
-  free(text);
 }
 
 TEST(a_bar_is_redrawn_ten_times_a_second_and_fits) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   struct progress *progress = progress_create(out, PROGRESS_BAR, true, 60);
@@ -134,5 +132,4 @@ TEST(a_bar_is_redrawn_ten_times_a_second_and_fits) {
   assert_non_null(strstr(text, "a note\n"));
   assert_non_null(strstr(text, "3 failed"));
   assert_int_equal(text[size - 1], '\n');
-  free(text);
 }

@@ -55,13 +55,12 @@ TEST(every_knob_names_inputs_of_its_engine) {
 TEST(ladders_of_all_scenes) {
   size_t made = 0, refused = 0;
   for (size_t s = 0; s < scene_builtin_count(); s++) {
-    struct scene *scene = scene_of(scene_builtin_name(s));
+    SCENE scene = scene_of(scene_builtin_name(s));
     for (const struct knob *knob = scene->kind->knobs; knob && knob->name; knob++) {
       struct ladder ladder;
-      char *notes = NULL;
+      OWNED char *notes = NULL;
       error = (struct error){0};
       status code = ladder_make(knob, scene, NULL, &ladder, &notes, &error);
-      free(notes);
       if (code != STATUS_OK) {
         assert_int_equal(code, STATUS_CONTENT);
         assert_true(strlen(error.message) > 10);
@@ -88,7 +87,6 @@ TEST(ladders_of_all_scenes) {
       made++;
       ladder_clear(&ladder);
     }
-    scene_free(scene);
   }
   assert_true(made > 50 && refused > 10);
 }
@@ -100,7 +98,7 @@ static bool is_near(double value, double expected) {
 /* A graded body is fine at the point of impact. With more particles all of its spacings get smaller by one factor, so
  * that one law describes the ladder. With the zone alone, the rest gets coarser. The zone keeps its size. */
 TEST(graded_bodies_keep_their_zone) {
-  struct scene *scene = scene_of("solid-ice");
+  SCENE scene = scene_of("solid-ice");
   const struct sph_inputs *own = scene->inputs;
   struct ladder ladder;
   char *notes = NULL;
@@ -143,17 +141,16 @@ TEST(graded_bodies_keep_their_zone) {
   free(notes);
   assert_int_equal(ladder_make(knob_of("sph", "impact_zone"), scene, NULL, &ladder, &notes, &error), STATUS_CONTENT);
   free(notes);
-  scene_free(scene);
 }
 
 /* Finer grains of a block are more grains: its sides stay, to half a grain. */
 TEST(blocks_keep_their_sides) {
   static const char *const names[] = {"uniaxial", "compression", "block-impact"};
   for (size_t s = 0; s < sizeof names / sizeof *names; s++) {
-    struct scene *scene = scene_of(names[s]);
+    SCENE scene = scene_of(names[s]);
     const struct dem_inputs *own = scene->inputs;
-    struct ladder ladder;
-    char *notes = NULL;
+    OWNED_BY(ladder_clear) struct ladder ladder;
+    OWNED char *notes = NULL;
     assert_int_equal(ladder_make(knob_of("dem", "grains"), scene, NULL, &ladder, &notes, &error), STATUS_OK);
     assert_int_equal(ladder.count, 4);
     for (size_t l = 0; l < ladder.count; l++) {
@@ -166,14 +163,11 @@ TEST(blocks_keep_their_sides) {
     }
     assert_int_equal(((const struct dem_inputs *)ladder.level[0].scene->inputs)->body.columns,
                      (own->body.columns + 1) / 2);
-    ladder_clear(&ladder);
-    free(notes);
-    scene_free(scene);
   }
 }
 
 TEST(levels_of_ones_own) {
-  struct scene *scene = scene_of("basalt-sphere");
+  SCENE scene = scene_of("basalt-sphere");
   struct ladder ladder;
   char *notes = NULL;
   assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "3000,1000,93000", &ladder, &notes, &error),
@@ -220,13 +214,12 @@ TEST(levels_of_ones_own) {
   }
   assert_null(engine_knob(engine_find("dem", &error), "particles", &error));
   assert_non_null(strstr(error.message, "grains"));
-  scene_free(scene);
 }
 
 /* Named settings are levels by their work; the others are compared with the one called reference. */
 TEST(named_settings_are_levels) {
   char text[8192];
-  struct scene *scene = NULL;
+  SCENE scene = NULL;
   const char *builtin = scene_builtin_text("disc-explosion"), *own = strstr(builtin, "\nsettings:");
   assert_non_null(own); /* replaced by those of this test */
   snprintf(text, sizeof text,
@@ -263,12 +256,11 @@ TEST(named_settings_are_levels) {
   ladder_setting(knob_of("dem", "time_step"), scene, spacing, sizeof spacing);
   assert_string_equal(spacing, "2e-6");
   assert_int_equal(ladder_turn(knob, scene, "coarse", &error), STATUS_MISSING);
-  scene_free(scene);
 }
 
 /* The choices of other codes are another model, and no error of the resolution: levels only if the user names them. */
 TEST(settings_of_another_model_are_no_levels) {
-  struct scene *scene = scene_of("basalt-sphere");
+  SCENE scene = scene_of("basalt-sphere");
   const struct knob *knob = knob_of("sph", "settings");
   struct ladder ladder;
   char *notes = NULL;
@@ -285,7 +277,6 @@ TEST(settings_of_another_model_are_no_levels) {
   assert_int_equal(ladder.count, 2);
   ladder_clear(&ladder);
   free(notes);
-  scene_free(scene);
 }
 
 static double number(struct store *store, const char *sql) {
@@ -301,7 +292,7 @@ static int integer(struct store *store, const char *sql) {
 TEST(findings_replace_earlier_ones) {
   char path[64];
   struct store *store = NULL;
-  struct scene *scene = scene_of("disc-explosion");
+  SCENE scene = scene_of("disc-explosion");
   assert_int_equal(store_open_writer(fixture_path(path, "converge"), &store, NULL, 0, &error), STATUS_OK);
   int64_t point = 0;
   assert_int_equal(store_add_point(store, 0, scene, 0, NULL, &point, &error), STATUS_OK);
@@ -342,7 +333,6 @@ TEST(findings_replace_earlier_ones) {
   assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
   assert_int_equal(store_close(store, &error), STATUS_OK);
-  scene_free(scene);
 }
 
 /* Adds a level of a knob, which is the scene studied (`base` 0) or another point. */

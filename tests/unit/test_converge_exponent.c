@@ -19,7 +19,7 @@ static void add_run(struct store *store, int64_t session, int64_t point, const s
   struct fragment fragments[FRAGMENTS];
   struct estimate estimates[ESTIMATES_COUNT];
   struct outcome outcome = {.state = OUTCOME_COMPLETED, .fragment_count = FRAGMENTS, .kinetic_energy_share = NAN};
-  void *result = calloc(1, scene->kind->results->size);
+  OWNED void *result = calloc(1, scene->kind->results->size);
   assert_non_null(result);
   field_defaults(scene->kind->results, result);
   for (size_t i = 0; i < FRAGMENTS; i++) {
@@ -47,7 +47,6 @@ static void add_run(struct store *store, int64_t session, int64_t point, const s
                           .host = "testhost"};
   scene_identity(scene, seed, run.identity);
   assert_int_equal(store_add_run(store, &run, &error), STATUS_OK);
-  free(result);
 }
 
 /* A study of two time steps, whose runs have exponents that differ by 0.3. Seeds begin at 1; `missing` has no run. */
@@ -62,7 +61,7 @@ static void set_up_levels(struct fixture *f, const char *file, const char *quant
                           const char *settings) {
   char path[64];
   struct ladder levels;
-  char *notes = NULL;
+  OWNED char *notes = NULL;
   int64_t session = 0;
   *f = (struct fixture){.study = {.quantity_count = 1, .limits = {.first_seed = 1}}};
   f->study.rule = (struct study_rule){.within = NAN, .first_seeds = SEEDS, .most_seeds = SEEDS, .seconds = HUGE_VAL};
@@ -72,7 +71,6 @@ static void set_up_levels(struct fixture *f, const char *file, const char *quant
   assert_int_equal(ladder_make(engine_knob(f->scene->kind, "time_step", &error), f->scene, settings, &levels, &notes,
                                &error),
                    STATUS_OK);
-  free(notes);
   assert_int_equal(study_add(&f->study, f->scene, &levels, &error), STATUS_OK);
   f->ladder = &f->study.ladder[0];
   f->ladder->seeds = SEEDS;

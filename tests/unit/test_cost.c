@@ -77,7 +77,7 @@ TEST(a_run_told_by_its_beginning) {
   struct scene *scene = NULL, *coarse = NULL;
   struct error error = {0};
   char setting[64];
-  struct plan_trial *run = calloc(2, sizeof *run);
+  OWNED struct plan_trial *run = calloc(2, sizeof *run);
   assert_non_null(run);
   assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
   assert_int_equal(scene_set_text(scene, "body.diameter", "0.2 m", &error), STATUS_OK);
@@ -99,7 +99,6 @@ TEST(a_run_told_by_its_beginning) {
                                    .progress = run[0].mark_progress[place]};
   const double told = plan_whole(&piece, &run[1]);
   assert_true(told < 1.5 * whole && told > whole / 1.5);
-  free(run);
   scene_free(coarse);
   scene_free(scene);
 }
@@ -108,7 +107,7 @@ TEST(a_run_told_by_its_beginning) {
 TEST(keys_of_a_plan) {
   static const char
       text[] = "name: keys\nscene: disc-explosion\nvary: {threshold.strain: [1 %, 2 %], contact.law: [off]}\n";
-  struct campaign *campaign = NULL;
+  CAMPAIGN campaign = NULL;
   struct error error = {0};
   assert_int_equal(campaign_parse("keys.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_OK);
   struct plan plan = {.store = "other.db",
@@ -144,7 +143,6 @@ TEST(keys_of_a_plan) {
   json = plan_print_json(campaign, &plan, 15);
   assert_non_null(strstr(json, ", \"alternatives\": [16], \"model\": \"grains\"}\n"));
   free(json);
-  campaign_free(campaign);
 }
 
 /* Four sizes at seven speeds, the sizes one after the other: two points of each are timed. A run takes 2 s for each
@@ -174,8 +172,8 @@ TEST(threads_share_the_time) {
   static const char
       text[] = "name: threads\nscene: basalt-sphere\nset: {fidelity.particles: 300, fidelity.threads: 2}\n"
                "seeds: {per_point: 1}\n";
-  struct campaign *campaign = NULL;
-  struct plan plan;
+  CAMPAIGN campaign = NULL;
+  OWNED_BY(plan_clear) struct plan plan;
   struct error error = {0};
   FILE *file = fopen("threads.yaml", "w");
   assert_non_null(file);
@@ -186,7 +184,5 @@ TEST(threads_share_the_time) {
   assert_int_equal(plan_make(campaign, &options, &plan, &error), STATUS_OK);
   NEAR(plan.threads, 2, 0);
   assert_true(plan.wall_s_least > 0.49 * plan.cpu_s_least && plan.wall_s_least < 0.6 * plan.cpu_s_least);
-  plan_clear(&plan);
-  campaign_free(campaign);
   remove("threads.yaml");
 }

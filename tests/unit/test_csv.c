@@ -11,7 +11,7 @@ static struct error error;
  * be read with '!' and the reason. */
 static const char *joined(const char *text, size_t size) {
   static char out[4096];
-  struct csv csv;
+  OWNED_BY(csv_close) struct csv csv;
   enum csv_item item;
   *out = '\0';
   if (csv_text(&csv, "t", text, size, &error) != STATUS_OK)
@@ -23,7 +23,6 @@ static const char *joined(const char *text, size_t size) {
     text_append(out, sizeof out, "%s%s", item == CSV_REMARK ? "#" : item == CSV_WRONG ? "!" : "/", csv.wrong);
     csv.wrong[0] = '\0';
   }
-  csv_close(&csv);
   return out;
 }
 
@@ -83,13 +82,12 @@ TEST(cells) {
 TEST(lines) {
   static const char text[] = "a\n\"1\n2\"\r\n# note\n\n3\n";
   static const int64_t expected[] = {1, 2, 4, 6, 7};
-  struct csv csv;
+  OWNED_BY(csv_close) struct csv csv;
   assert_int_equal(csv_text(&csv, "t", text, sizeof text - 1, &error), STATUS_OK);
   for (size_t i = 0; i < 5; i++) {
     assert_true((csv_next(&csv) == CSV_END) == (i == 4));
     assert_int_equal(csv.line, expected[i]);
   }
-  csv_close(&csv);
 }
 
 /* A number means one thing, or it is refused. */
@@ -116,7 +114,7 @@ TEST(numbers) {
       {"a\noff\n", "off"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    struct csv csv;
+    OWNED_BY(csv_close) struct csv csv;
     enum csv_item item;
     bool good = true;
     char last[40] = "";
@@ -129,7 +127,6 @@ TEST(numbers) {
     }
     assert_string_equal(good ? last : "!", cases[i].last);
     assert_true(good || csv.wrong[0]);
-    csv_close(&csv);
   }
 }
 

@@ -44,11 +44,10 @@ TEST(builtin_scenes_say_what_they_model) {
   for (size_t k = 0; k < sizeof scenes / sizeof scenes[0]; k++) {
     struct dem_inputs inputs = DEM_CASE(scenes[k], NULL);
     assert_int_equal(inputs.kind, (int)k); /* listed in the order of enum dem_kind */
-    char *text = dem_engine.describe(&inputs, true);
+    OWNED char *text = dem_engine.describe(&inputs, true);
     assert_non_null(strstr(text, scenes[k]));
     assert_non_null(strstr(text, "stability limit"));
     assert_null(strstr(text, "cannot be run"));
-    free(text);
     struct error error = {0};
     void *run;
     assert_int_equal(dem_engine.prepare(&inputs, 1, &run, &error), STATUS_OK);
@@ -224,13 +223,12 @@ TEST(what_cannot_run_is_refused) {
   inputs = DEM_CASE("block-impact", NULL);
   inputs.stop.end_time = 1e-9;
   refuse(inputs, "first time step");
-  struct scene *scene;
+  SCENE scene = NULL;
   struct error error = {0};
   assert_int_equal(scene_load("block-impact", NULL, &scene, &error), STATUS_OK);
   assert_int_equal(scene_set_text(scene, "charge.energy", "1 J/m", &error), STATUS_OK);
   assert_int_equal(scene_check(scene, &error), STATUS_CONTENT); /* an input without effect here */
   assert_non_null(strstr(error.message, "charge.energy"));
-  scene_free(scene);
 }
 
 /* The estimate of the longest stable step, which is there before a body: no body of 20 is less stable than it by more
@@ -522,7 +520,7 @@ TEST(grains_too_fast_for_the_step_end_a_run) {
 TEST(the_step_follows_from_the_contact_law) {
   static const char *const laws[] = {"conservative", "printed", "off"};
   for (size_t k = 0; k < 3; k++) {
-    struct scene *scene = NULL;
+    SCENE scene = NULL;
     struct error error;
     assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
     assert_int_equal(scene_set_text(scene, "contact.law", laws[k], &error), STATUS_OK);
@@ -531,6 +529,5 @@ TEST(the_step_follows_from_the_contact_law) {
     assert_true(in->fidelity.time_step == (k == 1 ? 0.5e-6 : 1e-6));
     assert_int_equal(scene_set_text(scene, "fidelity.time_step", "2 us", &error), STATUS_OK);
     assert_true(fabs(in->fidelity.time_step - 2e-6) < 1e-20);
-    scene_free(scene);
   }
 }

@@ -54,8 +54,8 @@ TEST(fields_describe_themselves) {
     assert_true(fields_file_scalar(file, "inputs/grain.density") == 5000);
     assert_true(fields_file_described(file) > dem_results.count + outcome_table.count);
     /* outlines: their areas are the grains' masses over the density */
-    double *point = malloc(3 * rows(file, "VTKHDF/Points") * sizeof *point), *mass = malloc(n * sizeof *mass);
-    int64_t *offset = malloc((n + 1) * sizeof *offset);
+    OWNED double *point = malloc(3 * rows(file, "VTKHDF/Points") * sizeof *point), *mass = malloc(n * sizeof *mass);
+    OWNED int64_t *offset = malloc((n + 1) * sizeof *offset);
     hid_t set = H5Dopen2(file, "VTKHDF/Points", H5P_DEFAULT);
     H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, point);
     H5Dclose(set);
@@ -74,9 +74,6 @@ TEST(fields_describe_themselves) {
       assert_true(fabs(area * 5000 / mass[k] - 1) <
                   1e-9); /* cross products of coordinates up to metres: 1e-16 / 1e-4 */
     }
-    free(point);
-    free(mass);
-    free(offset);
     free(ran.fragments);
     H5Fclose(file);
     unlink(path);

@@ -4,12 +4,11 @@
 
 static int differs(const char *text, size_t size, const char *expected) {
   struct thing thing;
-  char *report = report_of(text, size, &thing);
+  OWNED char *report = report_of(text, size, &thing);
   int wrong = strcmp(report ? report : "", expected ? expected : "") != 0;
   if (wrong)
     print_error("--- of\n%s\n--- came\n%s\n--- expected\n%s\n", text, report ? report : "(no error)",
                 expected ? expected : "(no error)");
-  free(report);
   return wrong;
 }
 
@@ -378,9 +377,8 @@ TEST(values_are_put) {
   struct error error = {0};
   const char *report = NULL;
   assert_int_equal(document_parse("a.yaml", text, strlen(text), &document, &error), STATUS_OK);
-  char *unchanged = document_change_text(document);
+  OWNED char *unchanged = document_change_text(document);
   assert_string_equal(unchanged, text);
-  free(unchanged);
   assert_int_equal(document_change_put(document, (const char *const[]){"body", "count"}, "6", "command line", &error),
                    STATUS_OK);
   assert_int_equal(document_change_put(document, (const char *const[]){"set", "y.z"}, "#3", "command line", &error),
@@ -390,14 +388,13 @@ TEST(values_are_put) {
   assert_int_equal(document_change_put(document, (const char *const[]){"name", "a"}, "1", "command line", &error),
                    STATUS_CONTENT);
   assert_string_equal(document_scalar(document_key(document_key(document_root(document), "body"), "count")), "6");
-  char *changed = document_change_text(document);
+  OWNED char *changed = document_change_text(document);
   assert_string_equal(changed, "# as read, with values of the command line; comments are left out\n"
                                "body: {length: 2 m, count: 6}\nname: \"a: b\"\nset: {x: [1 %, off], y.z: \"#3\"}\n"
                                "new: {a: 5 km/s}\n");
   assert_int_equal(document_parse("b.yaml", changed, strlen(changed), &again, &error), STATUS_OK);
   assert_string_equal(document_scalar(document_key(document_key(document_root(again), "set"), "y.z")), "#3");
   document_free(again);
-  free(changed);
   /* an error about such a value names the command line instead of a place in the file, and is a usage error */
   document_report(document_key(document_key(document_root(document), "new"), "a"), "new.a", "is wrong");
   assert_int_equal(document_finish(document, &report), STATUS_USAGE);

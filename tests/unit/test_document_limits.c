@@ -31,12 +31,11 @@ TEST(utf8_is_judged_strictly) {
     char text[64];
     struct thing thing;
     snprintf(text, sizeof text, "name: a%sb\n", cases[i].bytes);
-    char *report = report_text(text, &thing);
+    OWNED char *report = report_text(text, &thing);
     if ((report == NULL) != cases[i].good)
       fail_msg("case %zu: %s", i, report ? report : "accepted");
     if (report)
       assert_non_null(strstr(report, "a.yaml:1:8: error: "));
-    free(report);
   }
 }
 
@@ -51,7 +50,7 @@ TEST(limits_hold) {
   struct thing thing;
   double start = seconds();
   size_t size = (4 << 20) + 1;
-  char *text = malloc(size + 1);
+  OWNED char *text = malloc(size + 1);
   memset(text, ' ', size);
   text[size] = 0;
   char *report = report_of(text, size, &thing);
@@ -95,7 +94,6 @@ TEST(limits_hold) {
   report = report_of(text, used, &thing);
   assert_non_null(strstr(report, "more; correct the ones above first"));
   free(report);
-  free(text);
   /* About 1 s of CPU without sanitizers, 5 s with: a limit of 60 s distinguishes a quadratic search (hours) from a busy
    * machine. */
   assert_true(seconds() - start < 60);

@@ -85,7 +85,7 @@ enum { FROM = 3 - EJECTA_FIRST, TO = 13 - EJECTA_FIRST }; /* the bins of 2 and 2
 static void add_runs(const char *path, int64_t from, int64_t to) {
   struct store *store = NULL;
   struct fixture_inputs inputs;
-  struct fixture_run *f = malloc(sizeof *f);
+  OWNED struct fixture_run *f = malloc(sizeof *f);
   OK(store_open_writer(path, &store, NULL, 0, &error));
   for (int p = 0; p < 2; p++) {
     struct scene scene = fixture_scene(&inputs, 6 + p, 1e30);
@@ -102,7 +102,6 @@ static void add_runs(const char *path, int64_t from, int64_t to) {
     }
   }
   OK(store_close(store, &error));
-  free(f);
 }
 
 static void change(const char *path, const char *text) {
@@ -116,7 +115,7 @@ static void change(const char *path, const char *text) {
  * 2 and 3 degrees of freedom: 4.302653 and 3.182446. */
 static void expect_means(const char *path, const char *by) {
   struct store *store = NULL;
-  struct ask_ejecta *ejecta = malloc(sizeof *ejecta);
+  OWNED struct ask_ejecta *ejecta = malloc(sizeof *ejecta);
   int pool_count = 0;
   OK(store_open_reader(path, &store, &error));
   ASK_POOLS pools = ask_ejecta_pools(store, &(struct ask_pool_choice){.by = by}, &error);
@@ -149,7 +148,6 @@ static void expect_means(const char *path, const char *by) {
   OK(ask_pools_end(&pools));
   assert_int_equal(pool_count, by ? 1 : 2);
   OK(store_close(store, &error));
-  free(ejecta);
 }
 
 TEST(means_of_a_store) {
@@ -175,10 +173,8 @@ TEST(means_of_a_store) {
   OK(store_check(store, NULL, NULL, &error));
   OK(store_close(store, &error));
   expect_means(half, NULL);
-  char *one = dump(path), *two = dump(half);
+  OWNED char *one = dump(path), *two = dump(half);
   assert_string_equal(one, two);
-  free(one);
-  free(two);
 
   /* damage is seen, and merged into no store */
   change(other, "UPDATE ejecta SET mass = mass + 1e-9 WHERE run_id = 1 AND bin = 3");
@@ -202,7 +198,7 @@ TEST(version_4_is_brought_forward) {
     OK(fixture_populate(store, 2, 2, 10, false, &error));
     OK(store_close(store, &error));
     change(path, older);
-    char *before = dump(path);
+    OWNED char *before = dump(path);
     if (lost)
       change(path, "DELETE FROM axis WHERE path = 'material.k'");
     OK(store_open_reader(path, &store, &error));
@@ -220,12 +216,9 @@ TEST(version_4_is_brought_forward) {
     assert_near(number(store, "SELECT count(*) FROM ejecta"), 0, 0);
     assert_int_equal(store_check(store, NULL, NULL, &error), lost ? STATUS_CONTENT : STATUS_OK);
     OK(store_close(store, &error));
-    char *after = dump(path), *merged = dump(other);
+    OWNED char *after = dump(path), *merged = dump(other);
     assert_string_equal(before, after);
     assert_string_equal(before, merged);
-    free(before);
-    free(after);
-    free(merged);
     if (lost)
       continue;
     add_runs(path, 0, 4); /* and takes runs with ejecta */

@@ -108,7 +108,7 @@ TEST(least_squares_by_hand) {
 TEST(whole_masses_have_their_exponent) {
   enum { N = 20000 };
   const double element = 1;
-  double *masses = malloc(N * sizeof *masses), *real = malloc(N * sizeof *real);
+  OWNED double *masses = malloc(N * sizeof *masses), *real = malloc(N * sizeof *real);
   assert_true(masses && real);
   for (int i = 0; i < N; i++) {
     real[i] = element * 4.5 * N / (i + 0.5); /* ascending counts of m^-1: F(m) ~ m^-2 from 4.5 elements on */
@@ -131,8 +131,6 @@ TEST(whole_masses_have_their_exponent) {
   struct pooled_exponent pooled;
   assert_int_equal(pooled_exponent(&runs, EXPONENT_LEAST_SQUARES, window.lower, 0.95, &pooled, NULL), STATUS_OK);
   assert_true(pooled.fit.beta == fit.beta);
-  free(masses);
-  free(real);
 }
 
 TEST(equal_masses_have_no_exponent) {

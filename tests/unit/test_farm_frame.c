@@ -7,20 +7,19 @@
 #include "tests/support/check.h"
 
 static void append(struct farm_bytes *bytes, uint64_t handle, size_t size) {
-  uint8_t *payload = malloc(size + 1);
+  OWNED uint8_t *payload = malloc(size + 1);
   memset(payload, (int)(handle & 0xff), size + 1);
   struct iovec part[2] = {{payload, size / 3}, {payload + size / 3, size - size / 3}};
   assert_true(farm_frame_append(bytes, FARM_FRAME_TASK, 7, handle, 2, part));
-  free(payload);
 }
 
 /* Delivered in pieces of every small size: the same frames, payloads aligned. */
 TEST(any_cut) {
-  struct farm_bytes whole = {0};
+  OWNED_BY(farm_frame_free) struct farm_bytes whole = {0};
   for (uint64_t i = 0; i < 40; i++)
     append(&whole, i, (size_t)(i * i * 7));
   for (size_t piece = 1; piece < 200; piece += 13) {
-    struct farm_bytes in = {0};
+    OWNED_BY(farm_frame_free) struct farm_bytes in = {0};
     uint64_t expected = 0;
     for (size_t at = 0; at < whole.end; at += piece) {
       const size_t n = whole.end - at < piece ? whole.end - at : piece;
@@ -43,14 +42,12 @@ TEST(any_cut) {
       assert_int_equal(got, 0);
     }
     assert_int_equal(expected, 40);
-    farm_frame_free(&in);
   }
-  farm_frame_free(&whole);
 }
 
 /* A change of any single bit of a frame is detected, except in padding, which carries no data. */
 TEST(any_flipped_bit) {
-  struct farm_bytes bytes = {0};
+  OWNED_BY(farm_frame_free) struct farm_bytes bytes = {0};
   append(&bytes, 5, 100);
   for (size_t bit = 0; bit < 8 * (sizeof(struct farm_frame) + 100); bit++) {
     struct farm_frame frame;
@@ -64,7 +61,6 @@ TEST(any_flipped_bit) {
   const uint8_t *payload;
   assert_int_equal(farm_frame_next(&bytes, &frame, &payload), 1);
   assert_int_equal(farm_frame_next(&bytes, &frame, &payload), 0);
-  farm_frame_free(&bytes);
 }
 
 TEST(foreign_and_oversized) {
@@ -84,7 +80,7 @@ TEST(foreign_and_oversized) {
 }
 
 TEST(handles_are_never_used_twice) {
-  struct farm_job_table table = {0};
+  OWNED_BY(farm_job_table_free) struct farm_job_table table = {0};
   uint64_t old = 0;
   struct farm_job *kept[200];
   for (int i = 0; i < 200; i++) {
@@ -93,7 +89,7 @@ TEST(handles_are_never_used_twice) {
     assert_true(kept[i]->handle != 0);
   }
   for (int i = 0; i < 1000; i++) {
-    struct farm_job *job = farm_job_new(0, NULL, 0);
+    OWNED struct farm_job *job = farm_job_new(0, NULL, 0);
     assert_true(farm_job_table_add(&table, job));
     assert_true(job->handle != old);
     assert_null(farm_job_table_find(&table, old));
@@ -101,13 +97,11 @@ TEST(handles_are_never_used_twice) {
     old = job->handle;
     farm_job_table_remove(&table, old);
     assert_null(farm_job_table_find(&table, old));
-    free(job);
   }
   for (int i = 0; i < 200; i++)
     assert_ptr_equal(farm_job_table_find(&table, kept[i]->handle), kept[i]);
   assert_int_equal(table.count, 200);
   assert_int_equal(HASH_COUNT(table.jobs), 200); /* none of the removed jobs is left */
-  farm_job_table_free(&table);
 }
 
 TEST(queues_keep_order) {
@@ -122,9 +116,8 @@ TEST(queues_keep_order) {
   const uint64_t expected[] = {9, 1, 2, 4, 6};
   assert_int_equal(queue.count, 5);
   for (int i = 0; i < 5; i++) {
-    struct farm_job *job = farm_job_pop(&queue);
+    OWNED struct farm_job *job = farm_job_pop(&queue);
     assert_int_equal(job->handle, expected[i]);
-    free(job);
   }
   assert_null(farm_job_pop(&queue));
 }

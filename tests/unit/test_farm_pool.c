@@ -38,32 +38,30 @@ TEST(same_answers_whatever_the_slots) {
     expected += task_value(id);
   for (int mode = 0; mode < 2; mode++) {
     for (int slots = 1; slots <= 5; slots += 2) {
-      struct task_list list;
+      OWNED_BY(task_list_free) struct task_list list;
       struct error error = {0};
       task_list_new(&list, 500);
       assert_int_equal(run_list((struct farm_options){.slots = slots, .in_process = mode}, &list, &error), STATUS_OK);
       assert_each_once(&list);
       assert_true(list.sum == expected);
-      task_list_free(&list);
     }
   }
 }
 
 TEST(no_tasks_and_fewer_than_slots) {
   for (size_t count = 0; count < 3; count++) {
-    struct task_list list;
+    OWNED_BY(task_list_free) struct task_list list;
     struct error error = {0};
     task_list_new(&list, count);
     assert_int_equal(run_list((struct farm_options){.slots = 4}, &list, &error), STATUS_OK);
     assert_each_once(&list);
-    task_list_free(&list);
   }
 }
 
 TEST(every_ending) {
   const double limit_s = 2; /* much longer than the end of a process under sanitizers, which looks for leaks */
   for (int mode = 0; mode < 2; mode++) {
-    struct task_list list;
+    OWNED_BY(task_list_free) struct task_list list;
     struct error error = {0};
     task_list_new(&list, 40);
     list.tasks[3].kind = TASK_SEGV;
@@ -104,13 +102,12 @@ TEST(every_ending) {
     for (size_t i = 0; i < list.count; i++)
       if (list.tasks[i].kind == TASK_ECHO)
         assert_int_equal(list.endings[i], FARM_DONE);
-    task_list_free(&list);
   }
 }
 
 TEST(large_results) {
   for (int mode = 0; mode < 2; mode++) {
-    struct task_list list;
+    OWNED_BY(task_list_free) struct task_list list;
     struct error error = {0};
     task_list_new(&list, 40);
     for (size_t i = 0; i < list.count; i++)
@@ -119,14 +116,13 @@ TEST(large_results) {
     assert_each_once(&list);
     for (size_t i = 0; i < list.count; i++)
       assert_int_equal(list.endings[i], FARM_DONE);
-    task_list_free(&list);
   }
 }
 
 /* CPU and memory are those of the task, not of earlier tasks in the slot. */
 TEST(costs_are_the_tasks_own) {
   for (int mode = 0; mode < 2; mode++) {
-    struct task_list list;
+    OWNED_BY(task_list_free) struct task_list list;
     struct error error = {0};
     task_list_new(&list, 3);
     list.tasks[0] = (struct task){.id = 0, .kind = TASK_ALLOC, .amount = 1e8};
@@ -141,7 +137,6 @@ TEST(costs_are_the_tasks_own) {
     assert_true(list.cpus[1] > 0.099 && list.cpus[1] < 0.2); /* above: 0.1 burnt + fork and exit on a loaded machine */
     assert_true(list.cpus[2] < 0.05);
     assert_true(list.walls[2] > 0.099);
-    task_list_free(&list);
   }
 }
 
@@ -149,7 +144,7 @@ TEST(the_caller_can_stop) {
   const status reasons[] = {STATUS_STOPPED, STATUS_IO};
   for (int reason = 0; reason < 2; reason++) {
     for (int mode = 0; mode < 2; mode++) {
-      struct task_list list;
+      OWNED_BY(task_list_free) struct task_list list;
       struct error error = {0};
       task_list_new(&list, 1000);
       for (size_t i = 0; i < list.count; i++)
@@ -165,7 +160,6 @@ TEST(the_caller_can_stop) {
         assert_int_equal(list.reported, 20); /* the campaign asked for no more tasks */
       else
         assert_in_range(list.reported, 20, 26); /* every started run is reported: two slots, a few sent ahead */
-      task_list_free(&list);
     }
   }
 }
@@ -173,14 +167,13 @@ TEST(the_caller_can_stop) {
 TEST(runs_again_after_a_run) {
   struct farm *farm = start((struct farm_options){.slots = 2});
   for (int round = 0; round < 3; round++) {
-    struct task_list list;
+    OWNED_BY(task_list_free) struct task_list list;
     struct error error = {0};
     task_list_new(&list, 50);
     list.tasks[10].kind = TASK_SEGV;
     const struct farm_manager manager = task_list_manager(&list);
     assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
     assert_each_once(&list);
-    task_list_free(&list);
   }
   farm_stop(farm);
 }
@@ -188,7 +181,7 @@ TEST(runs_again_after_a_run) {
 /* The last short tasks do not wait behind a long one that started earlier. */
 TEST(nobody_waits_behind_a_long_task) {
   for (int mode = 0; mode < 2; mode++) {
-    struct task_list list;
+    OWNED_BY(task_list_free) struct task_list list;
     struct error error = {0};
     task_list_new(&list, 6);
     for (size_t i = 0; i < list.count; i++)
@@ -200,7 +193,6 @@ TEST(nobody_waits_behind_a_long_task) {
     for (size_t i = 1; i < list.count; i++)
       assert_true(list.slots[i] != list.slots[0]);
     assert_true(wall < 1.5); /* 1 s of the long task plus a margin for a loaded machine; behind it: 1.02 s and more */
-    task_list_free(&list);
   }
 }
 
@@ -282,7 +274,7 @@ TEST(leaks_nothing) {
 }
 
 TEST(asleep_while_tasks_sleep) {
-  struct task_list list;
+  OWNED_BY(task_list_free) struct task_list list;
   struct error error = {0};
   task_list_new(&list, 2);
   for (size_t i = 0; i < 2; i++)
@@ -301,5 +293,4 @@ TEST(asleep_while_tasks_sleep) {
   assert_in_range(after.ru_nvcsw - before.ru_nvcsw, 10, 60);
   assert_true(usage.manager_cpu_s < 0.2 * usage.wall_s);
   assert_in_range(list.ticks, 10, 21); /* every 100 ms at most, and not much less often */
-  task_list_free(&list);
 }

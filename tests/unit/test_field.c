@@ -483,7 +483,7 @@ TEST(bytes_round_trip) {
     struct thing thing, back;
     random_thing(&word, &thing);
     size_t size = field_encoded_size(&table, &thing);
-    uint8_t *bytes = malloc(size), *again = malloc(size);
+    OWNED uint8_t *bytes = malloc(size), *again = malloc(size);
     assert_int_equal(field_encode(&table, &thing, bytes), size);
     assert_int_equal(field_decode(&table, bytes, size, &back), size);
     assert_int_equal(field_encoded_size(&table, &back), size);
@@ -493,8 +493,6 @@ TEST(bytes_round_trip) {
     assert_string_equal(thing.name, back.name);
     for (size_t cut = 0; cut < size; cut += 1 + cut / 8)
       assert_int_equal(field_decode(&table, bytes, cut, &back), 0);
-    free(bytes);
-    free(again);
   }
 }
 

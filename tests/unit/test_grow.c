@@ -6,7 +6,7 @@
 #include "tests/support/check.h"
 
 TEST(items_stay_and_the_room_doubles) {
-  double *values = NULL;
+  OWNED double *values = NULL;
   size_t room = 0, moves = 0;
   for (size_t i = 0; i < 10000; i++) {
     const size_t before = room;
@@ -18,22 +18,20 @@ TEST(items_stay_and_the_room_doubles) {
   for (size_t i = 0; i < 10000; i++)
     assert_true(values[i] == (double)i);
   assert_true(moves <= 10); /* 32 doubled nine times is more than 10000 */
-  free(values);
 }
 
 TEST(a_large_need_is_met_at_once) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t room = 0;
   assert_true(grow_room(&text, &room, 100000, 1));
   assert_int_equal(room, 100000);
   text[99999] = 'x';
   assert_true(grow_room(&text, &room, 100000, 1));
   assert_int_equal(room, 100000);
-  free(text);
 }
 
 TEST(without_memory_the_array_stays) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t room = 0;
   assert_true(grow_room(&text, &room, 1, 1));
   text[0] = 'x';
@@ -41,7 +39,6 @@ TEST(without_memory_the_array_stays) {
   assert_false(grow_room(&text, &room, SIZE_MAX / 2, 1));
   assert_int_equal(room, before);
   assert_int_equal(text[0], 'x');
-  free(text);
 }
 
 TEST(aligned_arrays_keep_what_is_asked_for) {

@@ -178,13 +178,12 @@ TEST(scatter_knows_two_heaps_and_too_few_runs) {
 static struct kriging *surface_of(size_t n, const double *x, const double *y, double own, double shared) {
   struct kriging *k = NULL;
   struct error error;
-  double *noise = calloc(n * n, sizeof *noise);
+  OWNED double *noise = calloc(n * n, sizeof *noise);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
       noise[i * n + j] = shared + (i == j ? own : 0);
   const struct kriging_data data = {.points = n, .inputs = 1, .x = x, .mean = y, .noise = noise};
   assert_int_equal(kriging_fit(&data, &k, &error), STATUS_OK);
-  free(noise);
   return k;
 }
 
@@ -314,7 +313,7 @@ TEST(a_sample_leaves_a_lower_maximum) {
   const double correlation[4] = {1, 0, 0, 1};
   const struct posterior_model model = {.inputs = 2, .outputs = 2, .data = data, .correlation = correlation};
   for (uint64_t seed = 1; seed <= 5; seed++) {
-    struct posterior sample;
+    OWNED_BY(posterior_clear) struct posterior sample;
     assert_int_equal(posterior_make(&model, seed, &sample, &error), STATUS_OK);
     assert_true(sample.sampled);
     double mean = 0, square = 0;
@@ -326,7 +325,6 @@ TEST(a_sample_leaves_a_lower_maximum) {
     }
     assert_near(mean, 1, 0.1);                      /* its own width is 0.1 */
     assert_true(sqrt(square - mean * mean) > 0.02); /* of the order of sqrt(0.06) / 2 */
-    posterior_clear(&sample);
   }
   for (int k = 0; k < 2; k++)
     kriging_free(data[k].surface);
@@ -585,11 +583,10 @@ TEST(points_of_one_run_are_left_out) {
     values[2 * (ALL - 1)] = 100, values[2 * (ALL - 1) + 1] = NAN;
     const struct surfaces_runs runs =
         {.points = with ? ALL : ALL - 1, .inputs = 1, .outputs = 1, .replicates = 2, .z = z, .values = values};
-    struct surfaces surfaces;
+    OWNED_BY(surfaces_clear) struct surfaces surfaces;
     assert_int_equal(surfaces_fit(&runs, &data, &bounded, &surfaces, &error), STATUS_OK);
     assert_int_equal(surfaces.used[0], ALL - 1);
     at[with] = kriging_predict(surfaces.surface[0], &(double){0.25}, NULL);
-    surfaces_clear(&surfaces);
   }
   assert_true(at[0] == at[1]);
 }

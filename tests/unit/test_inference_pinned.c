@@ -76,7 +76,7 @@ static void fit(const char *name, case_model model, size_t inputs, size_t output
 
 TEST(fits_stay) {
   static const bool bounded[INFERENCE_INPUTS] = {true, false, true}, loose[INFERENCE_INPUTS] = {false};
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   assert_non_null(out = open_memstream(&text, &size));
   const struct posterior_datum three[] = {{.value = 0.6, .error = 0.01, .specimens = 1, .shot = 0},
@@ -102,5 +102,4 @@ TEST(fits_stay) {
   say("eigenvalues", 3, values), say("eigenvectors", 9, vectors);
   fclose(out);
   pinned_same("unit/inference.txt", text, 1e-5); /* surfaces are optimised to some 1e-7 */
-  free(text);
 }

@@ -41,12 +41,11 @@ TEST(the_three_kinds) {
 
   assert_int_equal(read_text("mass (kg),count\n1,10\n4,1\n2,5\n", &no_size, &m), STATUS_OK);
   assert_true(!m.single && m.n == 3 && m.above[0] == 16 && m.above[1] == 6 && m.above[2] == 1);
-  struct pooled_bin *bins;
+  OWNED struct pooled_bin *bins = NULL;
   size_t count;
   assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error), STATUS_OK);
   assert_int_equal(count, 2); /* the last class has no upper end */
   assert_true(bins[0].value == 10 && bins[1].value == 2.5 && isnan(bins[0].half_width));
-  free(bins);
   measured_release(&m);
 
   /* Sizes: a sphere of 1 cm and 6/pi g/cm^3 weighs 1 g. The density of the file overrides that of the caller.
@@ -167,7 +166,7 @@ TEST(forms_of_laboratories) {
       {"mass (kg),cumulative retained (kg)\n4,1\n2,2\n1,6\n", false, true, {1, 2, 4}, {6, 2, 1}},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    struct measured m;
+    OWNED_BY(measured_release) struct measured m;
     if (read_text(cases[i].text, &no_size, &m) != STATUS_OK)
       fail_msg("%s: %s", cases[i].text, error.message);
     assert_true(m.single == cases[i].single && m.weighed == cases[i].weighed && m.n == 3);
@@ -175,7 +174,6 @@ TEST(forms_of_laboratories) {
       near(m.mass[k], cases[i].mass[k]);
       near(m.above[k] + 1, cases[i].above[k] + 1);
     }
-    measured_release(&m);
   }
 }
 
@@ -239,8 +237,8 @@ TEST(sieves) {
 /* The bins of single fragments hold all of the axis from the complete mass to the heaviest: so many fragments per kg
  * are in the list. */
 TEST(empty_bins_count) {
-  struct measured m;
-  struct pooled_bin *bins;
+  OWNED_BY(measured_release) struct measured m;
+  OWNED struct pooled_bin *bins = NULL;
   size_t count;
   assert_int_equal(read_text("# complete from: 3 kg\nmass (kg)\n4.4\n5.9\n5.91\n16\n", &no_size, &m), STATUS_OK);
   assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error), STATUS_OK);
@@ -251,8 +249,6 @@ TEST(empty_bins_count) {
     near(bins[b].value * (bins[b].upper - bins[b].lower), (double)bins[b].count);
   }
   assert_true(bins[1].count == 2 && bins[2].upper > 16);
-  free(bins);
-  measured_release(&m);
 }
 
 /* Runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */

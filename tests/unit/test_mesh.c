@@ -40,7 +40,7 @@ static void near(double value, double expected, double error) {
 }
 
 TEST(cube_in_all_forms) {
-  struct mesh *m = read_text(cube);
+  MESH *m = read_text(cube);
   assert_int_equal(m->faces, 12);
   near(m->volume, 1, 1e-15);
   near(m->area, 6, 1e-14);
@@ -60,15 +60,13 @@ TEST(cube_in_all_forms) {
   near(normal[1], 0.8, 1e-15);
   near(mesh_distance(m, (const double[3]){0.1, 0, 0.2}, normal), -0.3, 1e-15);
   near(normal[2], 1, 1e-15);
-  mesh_free(m);
 }
 
 TEST(tetrahedron_of_words) {
-  struct mesh *m = read_text(tetrahedron);
+  MESH *m = read_text(tetrahedron);
   near(m->volume, 36, 1e-13);
   for (int k = 0; k < 3; k++)
     near(m->centre[k], 1.5, 1e-14);
-  mesh_free(m);
 }
 
 /* ---- a ball of many faces, in every format ---- */
@@ -146,16 +144,15 @@ static char *write_ball(int format, bool inside_out, size_t *size) {
 
 /* Texts have 9 digits of the floats. */
 TEST(formats_agree) {
-  struct mesh *first = NULL;
+  MESH *first = NULL;
   for (int format = 0; format < 3; format++)
     for (int inside_out = 0; inside_out < 2; inside_out++) {
       size_t size;
-      struct mesh *m;
+      struct mesh *m = NULL;
       struct error error;
-      char *bytes = write_ball(format, inside_out, &size);
+      OWNED char *bytes = write_ball(format, inside_out, &size);
       if (mesh_read("ball", bytes, size, &m, &error))
         fail_msg("%s", error.message);
-      free(bytes);
       near(m->volume, 4 * M_PI / 3, 0.02 * 4 * M_PI / 3);
       near(m->area, 4 * M_PI, 0.01 * 4 * M_PI);
       if (!first) {
@@ -165,7 +162,6 @@ TEST(formats_agree) {
       near(m->volume, first->volume, 1e-7);
       mesh_free(m);
     }
-  mesh_free(first);
 }
 
 /* Inside and distance of the ball against its chords: faces lie between the radii r and 1. */
@@ -175,7 +171,7 @@ TEST(binary_file_with_a_tail) {
   size_t size;
   struct mesh *plain, *longer;
   struct error error;
-  char *bytes = write_ball(2, false, &size);
+  OWNED char *bytes = write_ball(2, false, &size);
   assert_int_equal(mesh_read("ball", bytes, size, &plain, &error), STATUS_OK);
   assert_int_equal(plain->tail, 0);
   bytes = realloc(bytes, size + sizeof tail);
@@ -189,26 +185,23 @@ TEST(binary_file_with_a_tail) {
     mesh_free(longer);
   }
   mesh_free(plain);
-  free(bytes);
 }
 
 /* A backslash joins the next line of an OBJ file. Comments end with their line, and places in messages count all. */
 TEST(obj_lines_go_on) {
-  struct mesh *m = read_text("# made in C:\\models\\\n"
-                             "v 0 \\\n 0 0\nv 6\\\r\n 0 \\  \n\\\n 0\nv 0 6 0\nv 0 0 6 # C:\\\n"
-                             "f 1 3 \\\n2\nf 1\\\n 2\\\n 4\nf 1 4 3\nf \\\n2 3 4");
+  MESH *m = read_text("# made in C:\\models\\\n"
+                      "v 0 \\\n 0 0\nv 6\\\r\n 0 \\  \n\\\n 0\nv 0 6 0\nv 0 0 6 # C:\\\n"
+                      "f 1 3 \\\n2\nf 1\\\n 2\\\n 4\nf 1 4 3\nf \\\n2 3 4");
   assert_int_equal(m->faces, 4);
   near(m->volume, 36, 1e-13);
-  mesh_free(m);
 }
 
 TEST(ball_inside_and_distance) {
   size_t size;
-  struct mesh *m;
+  MESH *m = NULL;
   struct error error;
-  char *bytes = write_ball(2, false, &size);
+  OWNED char *bytes = write_ball(2, false, &size);
   assert_int_equal(mesh_read("ball", bytes, size, &m, &error), STATUS_OK);
-  free(bytes);
   const double r = cos(M_PI / RINGS) * cos(M_PI / AROUND) - 1e-6;
   int in = 0, thrown = 0;
   for (uint64_t i = 0; i < 100000; i++) {
@@ -232,7 +225,6 @@ TEST(ball_inside_and_distance) {
   }
   /* The share of the volume; throws on the eighths are not random, so 3 %. */
   near(in * 2.2 * 2.2 * 2.2 / thrown, m->volume, 0.03 * m->volume);
-  mesh_free(m);
 }
 
 /* A cube as OBJ text: scale, offset along x, and the number of vertices before it. */
@@ -271,7 +263,7 @@ static void refused(const char *text, size_t size, const char *part) {
 }
 
 TEST(parts_and_cavities) {
-  char *hollow = two_cubes(1, 0, true), *apart = two_cubes(1, 3, false);
+  OWNED char *hollow = two_cubes(1, 0, true), *apart = two_cubes(1, 3, false);
   struct mesh *m = read_text(hollow);
   near(m->volume, 7, 1e-13);
   assert_int_equal(m->parts, 1);
@@ -283,16 +275,11 @@ TEST(parts_and_cavities) {
   near(m->centre[0], 1. / 3, 1e-14);
   assert_int_equal(m->parts, 2);
   mesh_free(m);
-  free(hollow);
-  free(apart);
 
-  char *overlap = two_cubes(1, 0.9, false), *within = two_cubes(1, 0, false), *reversed = two_cubes(1, 3, true);
+  OWNED char *overlap = two_cubes(1, 0.9, false), *within = two_cubes(1, 0, false), *reversed = two_cubes(1, 3, true);
   refused(overlap, strlen(overlap), "cuts itself");
   refused(within, strlen(within), "cuts itself");
   refused(reversed, strlen(reversed), "inside out");
-  free(overlap);
-  free(within);
-  free(reversed);
 }
 
 TEST(refusals) {
@@ -330,20 +317,19 @@ TEST(refusals) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
     refused(cases[i].text, strlen(cases[i].text), cases[i].part);
   size_t size;
-  char *bytes = write_ball(2, false, &size);
+  OWNED char *bytes = write_ball(2, false, &size);
   refused(bytes, size - 1, "cut short or damaged");
   refused(bytes, 84, "cut short or damaged");
   refused(bytes, 83, "cut short or damaged");
   bytes[84 + 50 * 7 + 12 + 3] = 0x7f; /* the largest exponent */
   bytes[84 + 50 * 7 + 12 + 2] = (char)0x80;
   refused(bytes, size, "a.obj: face 8: the coordinate");
-  free(bytes);
 }
 
 /* A ring: the line from its centre meets nothing. */
 TEST(ring_is_missed) {
   enum { N = 24 };
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
@@ -357,15 +343,13 @@ TEST(ring_is_missed) {
       fprintf(out, "f %d %d %d %d\n", i * N + j + 1, (i + 1) % N * N + j + 1, (i + 1) % N * N + (j + 1) % N + 1,
               i * N + (j + 1) % N + 1);
   fclose(out);
-  struct mesh *m = read_text(text);
-  free(text);
+  MESH *m = read_text(text);
   double point[3], normal[3];
   near(m->volume, 2 * M_PI * M_PI * 3, 0.03 * 2 * M_PI * M_PI * 3);
   assert_false(mesh_surface(m, (const double[3]){0, 0, 1}, point, normal));
   assert_true(mesh_surface(m, (const double[3]){1, 0, 0}, point, normal));
   near(point[0], 4, 1e-9); /* the far side, not the hole's */
   assert_true(normal[0] > 0.9);
-  mesh_free(m);
 }
 
 TEST(files_by_content) {

@@ -165,7 +165,7 @@ TEST(documents_of_the_pages_are_good) {
                                          {"quartzite-measured", "quartzite"}};
   for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
     struct error error = {0};
-    struct campaign *own = NULL;
+    CAMPAIGN own = NULL;
     struct observed *observed = NULL;
     struct fit *fit = NULL;
     char path[2][512];
@@ -180,13 +180,12 @@ TEST(documents_of_the_pages_are_good) {
       fail_msg("%s", error.message);
     fit_free(fit);
     observed_free(observed);
-    campaign_free(own);
   }
 }
 
 /* Which campaigns a fit accepts. */
 static status create(const char *text, struct error *error) {
-  struct campaign *other = NULL;
+  CAMPAIGN other = NULL;
   struct observed *m = good(SHOT "measured: [{quantity: time, value: 1 ms}]\n");
   struct fit *fit = NULL;
   const struct fit_rule rule = {.rounds = 4};
@@ -195,7 +194,6 @@ static status create(const char *text, struct error *error) {
   const status code = fit_create(other, m, &rule, "disc-explosion", &fit, error);
   fit_free(fit);
   observed_free(m);
-  campaign_free(other);
   return code;
 }
 

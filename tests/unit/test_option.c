@@ -117,7 +117,7 @@ TEST(test_nearest_name) {
 TEST(test_help_is_whole) {
   for (size_t i = 0; i < commands_count(); i++) {
     const struct command *each = commands_all()[i];
-    char *text = NULL;
+    OWNED char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     help_one(each, out);
@@ -157,7 +157,6 @@ TEST(test_help_is_whole) {
       if (strlen(line) > 100)
         fail_msg("%s: help line is %zu wide: %s", each->name, strlen(line), line);
     assert_true(lines > 8);
-    free(text);
   }
 }
 

@@ -23,14 +23,13 @@ static struct store *filled(const char *name, int runs, char path[64]) {
 
 /* The page as SQLite reads its file. */
 static sqlite3 *opened(struct ask_page *page) {
-  unsigned char *bytes = NULL;
+  OWNED unsigned char *bytes = NULL;
   size_t size = 0;
   sqlite3 *db = NULL;
   OK(ask_page_file(page, &bytes, &size, &error));
   assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
   unsigned char *copy = sqlite3_malloc64(size);
   memcpy(copy, bytes, size);
-  free(bytes);
   assert_int_equal(sqlite3_deserialize(db, "main", copy, (sqlite3_int64)size, (sqlite3_int64)size,
                                        SQLITE_DESERIALIZE_FREEONCLOSE),
                    SQLITE_OK);
@@ -156,7 +155,7 @@ TEST(test_a_large_store_is_thinned) {
 TEST(test_two_modes_are_told) {
   char path[64];
   struct fixture_inputs inputs;
-  struct fixture_run *f = malloc(sizeof *f);
+  OWNED struct fixture_run *f = malloc(sizeof *f);
   struct store *store = NULL;
   fixture_path(path, "page-modes");
   OK(store_open_writer(path, &store, NULL, 0, &error));
@@ -187,7 +186,6 @@ TEST(test_two_modes_are_told) {
   sqlite3_close(db);
   ask_page_free(page);
   store_close(store, NULL);
-  free(f);
 }
 
 TEST(test_a_page_needs_a_place_for_data) {

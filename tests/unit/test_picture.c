@@ -630,7 +630,7 @@ TEST(pixels_are_pinned) {
   static const char *const names[] = {"grains.png", "cut.png",      "outside.png", "apart.png",
                                       "damage.png", "pressure.png", "margins.png", "sheet.png"};
   static const char *const path = CLAST_SOURCE_DIR "/tests/unit/pictures.txt";
-  char *now = NULL, *pinned = NULL;
+  OWNED char *now = NULL, *pinned = NULL;
   size_t length = 0;
   FILE *out = open_memstream(&now, &length);
   for (size_t k = 0; k < sizeof names / sizeof *names; k++)
@@ -644,7 +644,6 @@ TEST(pixels_are_pinned) {
   assert_true(file && getdelim(&pinned, &(size_t){0}, 0, file) > 0);
   fclose(file);
   same_cells(pinned, now, same_font());
-  free(pinned), free(now);
 }
 
 int main(int count, char **arguments) {

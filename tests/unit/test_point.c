@@ -90,7 +90,7 @@ TEST(views_and_c_agree) {
   assert_near(number(store, "SELECT largest_fraction_high95 FROM points"), s.high, 1e-11);
   assert_near(number(store, "SELECT largest_fraction_weak FROM points"), s.weak, 0);
 
-  struct pooled_bin *bins;
+  OWNED struct pooled_bin *bins = NULL;
   size_t count;
   OK(pooled_spectrum(&point.runs, &(struct pooled_form){0}, &bins, &count, &error));
   assert_near(number(store, "SELECT count(*) FROM spectra"), (double)count, 0);
@@ -107,7 +107,6 @@ TEST(views_and_c_agree) {
     assert_near(number_of(store, "SELECT count_hw95 FROM spectra WHERE bin = %d", bins[i].bin) / width,
                 bins[i].half_width, 1e-11 * bins[i].value);
   }
-  free(bins);
   point_release(&point);
   OK(store_close(store, &error));
 }
@@ -216,7 +215,7 @@ TEST(runs_that_count_in_order) {
 TEST(pairs_of_exponents) {
   char path[64], operand[80];
   int64_t id;
-  struct point_data point;
+  OWNED_BY(point_release) struct point_data point;
   struct pooled_exponent fit;
   struct ask_pairs *pairs = NULL;
   struct ask_pairs_row row;
@@ -239,7 +238,6 @@ TEST(pairs_of_exponents) {
   ask_pairs_free(pairs);
   assert_int_equal(ask_pairs_read(operand, operand, "beta_none", &(struct ask_choice){0}, &pairs, &error),
                    STATUS_USAGE);
-  point_release(&point);
 }
 
 static void line(void *context, const char *text) {

@@ -110,12 +110,11 @@ static void check_units(struct store *store, const struct ask_pool_choice *choic
   ASK_POOLS pools = ask_pools(store, choice, NULL, &error);
   for (const struct ask_pool *pool; (pool = ask_pools_next(&pools));) {
     const struct pooled_form form = ask_pool_form(pool, true, 0);
-    struct pooled_bin *bins;
+    OWNED struct pooled_bin *bins = NULL;
     size_t count;
     OK(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
     assert_near(bins[0].value, FIXTURE_FRAGMENTS, 1e-9);
     assert_int_equal(form.first_run != NULL, pool->points > 1);
-    free(bins);
   }
   OK(ask_pools_end(&pools));
 }

@@ -90,7 +90,7 @@ enum { AT_VERSION = 8, AT_BUILD = 32 };
 
 /* Adds `more` to a word of a restart file and corrects its checksum (FNV-1a of all but the last 8 bytes). */
 static void change_word(const char *path, size_t at, uint64_t more) {
-  unsigned char *bytes = NULL;
+  OWNED unsigned char *bytes = NULL;
   size_t size = 0;
   uint64_t word;
   assert_int_equal(file_read(path, "restart file", &bytes, &size, NULL), STATUS_OK);
@@ -102,7 +102,6 @@ static void change_word(const char *path, size_t at, uint64_t more) {
     sum = (sum ^ bytes[k]) * 0x100000001b3U;
   memcpy(bytes + size - 8, &sum, sizeof sum);
   assert_int_equal(file_write(path, "restart file", bytes, size, NULL), STATUS_OK);
-  free(bytes);
 }
 
 static void damaged_is_refused(const struct engine_kind *kind, const void *inputs, const void *other,

@@ -160,12 +160,11 @@ TEST(coverage) {
     int held = 0;
     for (uint64_t c = 0; c < CASES; c++) {
       double x[N];
-      struct scatter s;
+      OWNED_BY(scatter_release) struct scatter s;
       for (uint64_t i = 0; i < N; i++)
         x[i] = law ? exp(0.5 * normal(3, c, i)) : normal(2, c, i);
       assert_int_equal(scatter_make(N, x, &s, NULL), STATUS_OK);
       held += s.quantile[2].low <= median[law] && s.quantile[2].high >= median[law];
-      scatter_release(&s);
     }
     assert_true(held >= 0.95 * CASES - 4 * 4.4); /* exact: 0.95 and more */
   }
@@ -176,7 +175,7 @@ TEST(coverage) {
 TEST(split_of_a_variance) {
   enum { A = 3, B = 3, RUNS = 400, POINTS = A * B };
   uint32_t level[POINTS * 2];
-  double *value = malloc(POINTS * RUNS * sizeof *value);
+  OWNED double *value = malloc(POINTS * RUNS * sizeof *value);
   struct scatter_part parts[2 + SCATTER_PARTS];
   assert_non_null(value);
   for (int shared = 0; shared < 2; shared++) {
@@ -221,7 +220,6 @@ TEST(split_of_a_variance) {
     level[2 * p] = p;
   assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 4, 2, level, value}, parts, NULL), STATUS_OK);
   assert_true(isnan(parts[0].share) && isnan(parts[1].share) && isfinite(parts[2].share));
-  free(value);
 }
 
 /* Values near the ends of double: every number is that of ordinary values times the same power of two, bit for bit. */

@@ -73,24 +73,21 @@ static struct scene *parsed(const char *text) {
 }
 
 TEST(reads_and_fills_defaults) {
-  struct scene *scene = parsed("engine: tiny\nname: mine\nsource: a paper\nkind: ball\nball: {size: 3 cm}\n");
+  SCENE scene = parsed("engine: tiny\nname: mine\nsource: a paper\nkind: ball\nball: {size: 3 cm}\n");
   const struct tiny *values = scene->inputs;
   assert_ptr_equal(scene->kind, &tiny);
   assert_true(values->speed == 10 && values->size == 0.03 && values->count == 5);
   assert_true(scene->given[0] && !scene->given[1] && scene->given[2] && !scene->given[3]);
   assert_string_equal(scene->name, "mine");
-  char *json = scene_json(scene);
+  OWNED char *json = scene_json(scene);
   assert_string_equal(json, "{\"engine\":\"tiny\",\"name\":\"mine\",\"kind\":\"ball\",\"impact\":{\"speed\":10},"
                             "\"ball\":{\"size\":0.03},\"fidelity\":{\"count\":5}}");
-  struct scene *again = NULL; /* resolved JSON is itself a scene document: a stored scene can be run again */
+  SCENE again = NULL; /* resolved JSON is itself a scene document: a stored scene can be run again */
   assert_int_equal(scene_parse_json("t", json, &again, NULL), STATUS_OK);
   uint8_t one[16], two[16];
   scene_identity(scene, 7, one);
   scene_identity(again, 7, two);
   assert_memory_equal(one, two, 16);
-  free(json);
-  scene_free(again);
-  scene_free(scene);
   scene_free(NULL);
 }
 
@@ -194,7 +191,7 @@ TEST(overrides_are_checked) {
 
 TEST(identity_is_pinned) {
   uint8_t one[16], two[16];
-  struct scene *scene = parsed("engine: tiny\nball: {size: 50 mm}\n");
+  SCENE scene = parsed("engine: tiny\nball: {size: 50 mm}\n");
   scene_identity(scene, 42, one);
   /* hashlib.blake2s(b"engine=tiny\nresults_version=3\nseed=42\nball.size=0x1.999999999999ap-5\nfidelity.count=5\n"
    *                 b"impact.speed=0x1.4p+3\nkind=ball\n", digest_size=16). Stored runs are found by this identity. */
@@ -207,7 +204,7 @@ TEST(identity_is_pinned) {
   scene_identity(scene, 42, two);
   assert_memory_not_equal(one, two, 16);
   scene->kind = &tiny;
-  struct scene *same = parsed("name: other\nkind: ball\nengine: tiny\nfidelity: {count: 5.0}\nball: {size: 0.05 m}\n");
+  SCENE same = parsed("name: other\nkind: ball\nengine: tiny\nfidelity: {count: 5.0}\nball: {size: 0.05 m}\n");
   scene_identity(same, 42, two);
   assert_memory_equal(one, two, 16); /* order, spelling, name and given defaults do not matter */
   ((struct tiny *)same->inputs)->size = nextafter(0.05, 1);
@@ -218,8 +215,6 @@ TEST(identity_is_pinned) {
   scene_identity(scene, 42, one);
   scene_identity(same, 42, two);
   assert_memory_equal(one, two, 16); /* the size is inactive now */
-  scene_free(same);
-  scene_free(scene);
 }
 
 TEST(hash_has_known_answers) {

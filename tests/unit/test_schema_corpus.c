@@ -21,13 +21,11 @@ static bool judge(bool scene_kind, const char *path, bool show) {
   struct error error = {.status = STATUS_OK};
   status code;
   if (scene_kind) {
-    struct scene *scene = NULL;
+    SCENE scene = NULL;
     code = scene_load(path, NULL, &scene, &error);
-    scene_free(scene);
   } else {
-    struct campaign *campaign = NULL;
+    CAMPAIGN campaign = NULL;
     code = campaign_load(path, &campaign, &error);
-    campaign_free(campaign);
   }
   if (show && code)
     fprintf(stderr, "%s\n", error.message);
@@ -85,7 +83,7 @@ static void write_document(const char *engine, const char *first, const char *fi
 
 static void emit(const char *engine, const char *first, const char *first_text, const char *second,
                  const char *second_text) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   if (!out)
@@ -96,7 +94,6 @@ static void emit(const char *engine, const char *first, const char *first_text, 
   bool good = scene_parse("generated", text, &scene, NULL) == STATUS_OK;
   scene_free(scene);
   printf("%s\n%s%%%%\n", good ? "good" : "bad", text);
-  free(text);
 }
 
 /* One row with one text, under every state of what it depends on. */
@@ -167,7 +164,7 @@ int main(int count, char **arguments) {
   }
   int wrong = scene_builtin_count() == 0;
   for (size_t i = 0; i < scene_builtin_count(); i++) { /* the built-in scenes can be run unchanged */
-    struct scene *scene = NULL;
+    SCENE scene = NULL;
     struct error error;
     if (scene_load(scene_builtin_name(i), NULL, &scene, &error) || scene_check(scene, &error)) {
       fprintf(stderr, "built-in scene %s: %s\n", scene_builtin_name(i), error.message);
@@ -176,7 +173,6 @@ int main(int count, char **arguments) {
       fprintf(stderr, "built-in scene %s calls itself %s\n", scene_builtin_name(i), scene->name);
       wrong++;
     }
-    scene_free(scene);
   }
   static const char *const kinds[] = {"scene-dem", "scene-sph", "campaign"};
   for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {

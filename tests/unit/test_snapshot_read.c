@@ -40,10 +40,9 @@ static void look(const char *path, bool *rows, bool *time) {
   size_t count;
   double value = 0;
   assert_int_equal(snapshot_read_open(path, &file, &error), STATUS_OK);
-  double *read = snapshot_read_rows(file, POINTS, 3, SNAPSHOT_READ_REAL, &count);
+  OWNED double *read = snapshot_read_rows(file, POINTS, 3, SNAPSHOT_READ_REAL, &count);
   *rows = read;
   *time = snapshot_read_real(file, "run", "time", &value);
-  free(read);
   assert_true(snapshot_read_close(file));
 }
 

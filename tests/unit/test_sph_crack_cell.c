@@ -33,7 +33,7 @@ TEST(cubes) {
   for (uint64_t k = 0; k < 3; k++)
     assert_int_equal(sph_flaws_cells(1 + k % 2, 0, width, p, c.range[0], &cells[k], &error), STATUS_OK);
   assert_true(cells[0]->count > 64 && cells[0]->count < 216); /* the cube is cut by a turned grid */
-  unsigned char *seen = calloc(cells[0]->count, 1);
+  OWNED unsigned char *seen = calloc(cells[0]->count, 1);
   for (size_t i = 0; i < p->n; i++) {
     seen[cells[0]->of[i]] = 1;
     for (size_t j = 0; j < i; j++)
@@ -45,7 +45,6 @@ TEST(cubes) {
   assert_memory_equal(cells[0]->of, cells[2]->of, p->n * sizeof *cells[0]->of);
   for (int k = 0; k < 3; k++)
     free(cells[k]);
-  free(seen);
   sph_flaws_free(flaws);
   solid_end(&c);
 }
@@ -59,7 +58,7 @@ TEST(weakest_flaw) {
     struct sph_flaws *flaws;
     struct solid_case c = pulled(side / 2, seed, &flaws);
     const struct sph_cells *cells = flaws->cells;
-    double *volume = calloc(cells->count, sizeof *volume);
+    OWNED double *volume = calloc(cells->count, sizeof *volume);
     assert_int_equal(flaws->particles, c.particles->n);
     for (size_t i = 0; i < c.particles->n; i++)
       volume[cells->of[i]] += side * side * side / (double)c.particles->n;
@@ -68,7 +67,6 @@ TEST(weakest_flaw) {
       sum += law.k * volume[k] * exp(law.m * flaws->log_strain[flaws->first[k]]);
       count++;
     }
-    free(volume);
     sph_flaws_free(flaws);
     solid_end(&c);
   }
@@ -86,7 +84,7 @@ TEST(shared) {
   for (int step = 0; step < 30; step++)
     solid_step(&c, INFINITY);
   const struct sph_system *s = c.system;
-  double *damage = malloc(cells * sizeof *damage), *pressure = malloc(cells * sizeof *pressure);
+  OWNED double *damage = malloc(cells * sizeof *damage), *pressure = malloc(cells * sizeof *pressure);
   size_t broken = 0, different = 0;
   memset(damage, 0xff, cells * sizeof *damage); /* NaN */
   for (size_t i = 0; i < n; i++) {
@@ -116,8 +114,6 @@ TEST(shared) {
     const double radius = cbrt(3 * at_start / (4 * M_PI));
     assert_true(fabs(rate * radius / sph_material_crack_speed(&c.physics[0].material) - 1) < 1e-12); /* rounding */
   }
-  free(damage);
-  free(pressure);
   sph_flaws_free(flaws);
   solid_end(&c);
 }

@@ -43,17 +43,16 @@ static void measure(const struct sph_particles *start, const struct sph_particle
 }
 
 TEST(untouched) {
-  struct sph_particles *p = slab();
+  SPH_PARTICLES *p = slab();
   struct sph_results c = {0};
   measure(p, p, &options, 2, &c);
   assert_true(c.crater.volume == 0 && c.crater.depth == 0 && c.crater.radius == 0 && c.ejecta.mass_fraction == 0 &&
               c.palpha.compaction.volume == 0 && c.palpha.compaction.mass_fraction == 0);
-  sph_particles_free(p);
 }
 
 /* A bowl of radius 12 mm, ejected at 20 m/s. A pit that is not connected to it does not count. */
 TEST(thrown_out) {
-  struct sph_particles *start = slab(), *now = slab();
+  SPH_PARTICLES *start = slab(), *now = slab();
   size_t count = 0;
   for (size_t i = 0; i < now->n; i++) {
     double depth = HIGH * dx - now->z[i];
@@ -79,15 +78,13 @@ TEST(thrown_out) {
   now->rest_distention[0] = 1; /* half a cubic millimetre of pores, against the ejecta's volume */
   measure(start, now, &options, 2, &c);
   near(c.crater.compaction_share, 0.5 / (0.5 + (double)count), 1e-12, "share of compaction, with the ejecta's volume");
-  sph_particles_free(start);
-  sph_particles_free(now);
 }
 
 /* 100 particles leave: the i-th with i m/s along x and 10 m/s outwards. Sums of the table are those of the results, and
  * a bin has what its speeds say. With an escape speed of 50 m/s, those of 49 m/s and more along x leave; the hole is
  * the same. */
 TEST(thrown_out_at_many_speeds) {
-  struct sph_particles *start = slab(), *now = slab();
+  SPH_PARTICLES *start = slab(), *now = slab();
   for (size_t i = 0; i < 100; i++) {
     const size_t top = now->n - 1 - i;
     now->vx[top] = (double)i;
@@ -109,8 +106,6 @@ TEST(thrown_out_at_many_speeds) {
   }
   assert_true(c[0].crater.volume == c[1].crater.volume && c[0].crater.depth == c[1].crater.depth &&
               c[0].crater.compaction_share == c[1].crater.compaction_share);
-  sph_particles_free(start);
-  sph_particles_free(now);
 }
 
 /* The same bowl where the particles are 2.5 times as coarse as at the point of impact, and all that is left has moved
@@ -177,7 +172,7 @@ TEST(compacted) {
 
 /* A ball that is ejected completely: its crater is the ball, without the space below it. */
 TEST(nothing_left) {
-  struct sph_particles *start = slab(), *now = slab();
+  SPH_PARTICLES *start = slab(), *now = slab();
   const double radius = 14e-3;
   size_t n = 0;
   for (size_t i = 0; i < start->n; i++)
@@ -194,21 +189,17 @@ TEST(nothing_left) {
        "volume"); /* columns as above: their corners are wider than the ball, their ends half a layer shorter */
   near(c.crater.radius, radius, 0.1, "radius");
   near(c.crater.depth, 2 * radius, 0.05, "depth");
-  sph_particles_free(start);
-  sph_particles_free(now);
 }
 
 /* Matter with distention below 1.01 at the start is never counted as compacted. */
 TEST(hardly_porous) {
-  struct sph_particles *start = slab(), *now = slab();
+  SPH_PARTICLES *start = slab(), *now = slab();
   for (size_t i = 0; i < now->n; i++)
     start->distention[i] = start->rest_distention[i] = 1.005, now->rest_distention[i] = i ? 1.0049 : 1;
   struct sph_results c = {0};
   measure(start, now, &options, 1.005, &c);
   assert_true(c.palpha.compaction.mass_fraction == 0 && c.palpha.compaction.depth == 0 &&
               c.palpha.compaction.volume > 0);
-  sph_particles_free(start);
-  sph_particles_free(now);
 }
 
 /* x y z along the rows of `frame`, and away by `shift`. */
@@ -231,7 +222,7 @@ TEST(tilted) {
   size_t layers[FACES];
   o.spacing = 1.0001e-3;
   for (int face = LEVEL; face < FACES; face++) {
-    struct sph_particles *start = slab(), *now = slab();
+    SPH_PARTICLES *start = slab(), *now = slab();
     for (size_t i = 0; i < now->n; i++) {
       const double depth = HIGH * dx - now->z[i], r = hypot(hypot(now->x[i], now->y[i]), depth);
       now->vx[i] = 7;
@@ -251,8 +242,6 @@ TEST(tilted) {
     }
     measure(start, now, &o, 2, &c[face]);
     layers[face] = sph_crater_profile(start, now, &o, layer[face], LAYERS);
-    sph_particles_free(start);
-    sph_particles_free(now);
   }
 #define SAME(result) near(c[TILTED].result, c[LEVEL].result, 1e-9, #result)
   SAME(ejecta.mass_fraction);

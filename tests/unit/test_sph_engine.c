@@ -32,12 +32,11 @@ TEST(results_table_is_whole) {
 TEST(builtin_scenes_say_what_they_model) {
   for (size_t k = 0; k < SCENES; k++) {
     struct sph_inputs inputs = SPH_CASE(scenes[k], NULL);
-    char *text = sph_engine.describe(&inputs, true);
+    OWNED char *text = sph_engine.describe(&inputs, true);
     assert_non_null(strstr(text, "c_p "));
     assert_non_null(strstr(text, "bytes per particle"));
     if (strstr(text, "cannot be run"))
       fail_msg("%s: %s", scenes[k], text);
-    free(text);
     inputs.fidelity.particles = 1500;
     inputs.fidelity.points = 60;
     inputs.fidelity.graded = false;
@@ -82,9 +81,8 @@ static double number_behind(const char *text, const char *words) {
 /* The text of a projectile of one particle. */
 TEST(one_particle_is_no_plural) {
   struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.projectile_spacing=5");
-  char *text = sph_engine.describe(&inputs, true);
+  OWNED char *text = sph_engine.describe(&inputs, true);
   assert_non_null(strstr(text, "about 1 particle, "));
-  free(text);
 }
 
 /* The flaw strengths that explain prints are the real ones: (kV)^(-1/m), V the solid volume. */
@@ -92,18 +90,16 @@ TEST(flaws_are_described) {
   struct sph_inputs inputs = SPH_CASE("porous-ice", "target.material.porosity.distention=3");
   const double V = sph_derived_target_mass(&inputs) / inputs.target.material.density;
   const double want = pow(inputs.target.material.weibull.k * V, -1 / inputs.target.material.weibull.m);
-  char *text = sph_engine.describe(&inputs, true);
+  OWNED char *text = sph_engine.describe(&inputs, true);
   const double strain = number_behind(text, "the weakest opens at strain ");
   const double pascal = number_behind(strstr(text, "the weakest opens"), "(");
   assert_true(fabs(strain / want - 1) < 0.005 &&
               fabs(pascal / (want * sph_material_young_modulus(&inputs.target.material)) - 1) < 0.005); /* 3 digits */
-  free(text);
 }
 
 static double described_speed(const struct sph_inputs *inputs) {
-  char *text = sph_engine.describe(inputs, true);
+  OWNED char *text = sph_engine.describe(inputs, true);
   const double speed = number_behind(text, "of a core that does ");
-  free(text);
   return speed;
 }
 

@@ -114,11 +114,11 @@ static void read_doubles(hid_t file, const char *name, size_t rows, size_t width
 }
 
 TEST(what_is_written_is_what_is_read) {
-  struct sph_particles *p = shattered(6000);
-  struct sph_fragments pieces = pieces_of(p);
-  uint32_t *flaws = malloc(p->n * sizeof *flaws);
+  SPH_PARTICLES *p = shattered(6000);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments pieces = pieces_of(p);
+  OWNED uint32_t *flaws = malloc(p->n * sizeof *flaws);
   size_t n = p->n;
-  double *values = malloc(9 * (n + 1) * sizeof *values);
+  OWNED double *values = malloc(9 * (n + 1) * sizeof *values);
   for (size_t i = 0; i < n; i++)
     flaws[i] = (uint32_t)(i % 17);
   struct error error = {0};
@@ -178,7 +178,7 @@ TEST(what_is_written_is_what_is_read) {
   assert_true(values[1] == pieces.fragments[0].spin[1]);
   H5Fclose(file);
 
-  struct picture_cloud cloud;
+  OWNED_BY(picture_cloud_clear) struct picture_cloud cloud;
   if (picture_cloud_read(at("a.hdf"), &cloud, &error))
     fail_msg("%s", error.message);
   assert_true(picture_cloud_in_file(at("a.hdf")));
@@ -206,18 +206,13 @@ TEST(what_is_written_is_what_is_read) {
   struct picture_body body; /* its cells are no polygons */
   assert_int_equal(picture_fragments_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
   assert_int_equal(body.cells, 0);
-  picture_cloud_clear(&cloud);
-  sph_fragments_clear(&pieces);
-  sph_particles_free(p);
-  free(flaws);
-  free(values);
   unlink(at("a.hdf"));
 }
 
 /* VTKHDF 1.0: what ParaView 5.11 and VTK 9.1 require. */
 TEST(layout_is_what_vtk_reads) {
-  struct sph_particles *p = shattered(6000); /* enough for the compressed columns */
-  struct sph_fragments pieces = pieces_of(p);
+  SPH_PARTICLES *p = shattered(6000); /* enough for the compressed columns */
+  OWNED_BY(sph_fragments_clear) struct sph_fragments pieces = pieces_of(p);
   assert_int_equal(write_file(at("v.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
   hid_t file = H5Fopen(at("v.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT),
         attribute = H5Aopen_by_name(file, "VTKHDF", "Type", H5P_DEFAULT, H5P_DEFAULT);
@@ -245,7 +240,7 @@ TEST(layout_is_what_vtk_reads) {
     H5Dclose(set);
     assert_int_equal(one, p->n);
   }
-  double *values = malloc((p->n + 1) * sizeof *values);
+  OWNED double *values = malloc((p->n + 1) * sizeof *values);
   read_doubles(file, "VTKHDF/Connectivity", p->n, 0, values);
   assert_true(values[0] == 0 && values[p->n - 1] == (double)p->n - 1);
   read_doubles(file, "VTKHDF/Offsets", p->n + 1, 0, values);
@@ -259,18 +254,14 @@ TEST(layout_is_what_vtk_reads) {
   H5Tclose(type);
   H5Dclose(set);
   H5Fclose(file);
-  free(values);
-  sph_fragments_clear(&pieces);
-  sph_particles_free(p);
   unlink(at("v.hdf"));
 }
 
 static void copy_file(const char *from, const char *to, long keep) {
   FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
-  char *bytes = malloc((size_t)keep + 1);
+  OWNED char *bytes = malloc((size_t)keep + 1);
   assert_int_equal(fread(bytes, 1, (size_t)keep, in), keep);
   fwrite(bytes, 1, (size_t)keep, out);
-  free(bytes);
   fclose(in);
   fclose(out);
 }
@@ -295,8 +286,8 @@ static void replace(const char *path, const char *name, hid_t type, int rank, hs
 }
 
 TEST(damaged_and_foreign_files_are_refused) {
-  struct sph_particles *p = shattered(500);
-  struct sph_fragments pieces = pieces_of(p);
+  SPH_PARTICLES *p = shattered(500);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments pieces = pieces_of(p);
   struct picture_cloud cloud;
   struct error error = {0};
   size_t n = p->n;
@@ -329,8 +320,8 @@ TEST(damaged_and_foreign_files_are_refused) {
     assert_true(code == STATUS_OK || code == STATUS_CONTENT);
     picture_cloud_clear(&cloud);
   }
-  double *wild = calloc(3 * n, sizeof *wild);
-  int64_t *number = calloc(n, sizeof *number);
+  OWNED double *wild = calloc(3 * n, sizeof *wild);
+  OWNED int64_t *number = calloc(n, sizeof *number);
 #define REFUSED(words)                                                                                                 \
   do {                                                                                                                 \
     assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_CONTENT);                                         \
@@ -363,8 +354,6 @@ TEST(damaged_and_foreign_files_are_refused) {
   REFUSED("cannot be read");
   replace(bad, "VTKHDF/Points", H5T_NATIVE_DOUBLE, 1, n, 0, wild);
   REFUSED("cannot be read");
-  free(wild);
-  free(number);
   FILE *text = fopen(bad, "wb");
   fputs("this is no HDF5 file\n", text);
   fclose(text);
@@ -374,8 +363,6 @@ TEST(damaged_and_foreign_files_are_refused) {
   assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_MISSING);
   assert_int_equal(write_file(at("no/such/folder/x.hdf"), p, &pieces, NULL, &error), STATUS_IO);
   unlink(good);
-  sph_fragments_clear(&pieces);
-  sph_particles_free(p);
 }
 
 static unsigned char pixel(const char *path, double x,
@@ -395,10 +382,10 @@ static unsigned char pixel(const char *path, double x,
 
 TEST(pictures) {
   struct sph_particles *p = shattered(keep_pictures ? 60000 : 8000);
-  struct sph_fragments pieces = pieces_of(p);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments pieces = pieces_of(p);
   struct error error = {0};
   assert_int_equal(write_file(at("p.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
-  struct picture_cloud cloud;
+  OWNED_BY(picture_cloud_clear) struct picture_cloud cloud;
   assert_int_equal(picture_cloud_read(at("p.hdf"), &cloud, &error), STATUS_OK);
   char numbers[200], unit[32];
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
@@ -420,7 +407,7 @@ TEST(pictures) {
                 {"cut-distention.png", "distention", PICTURE_CUT, 2},
                 {"outside.svg", NULL, PICTURE_CUT, 0}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
-    double *column = NULL;
+    OWNED double *column = NULL;
     if (wanted[k].column)
       assert_int_equal(picture_cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, &error),
                        STATUS_OK);
@@ -431,7 +418,6 @@ TEST(pictures) {
     look.unit = unit;
     if (picture_particles(at(wanted[k].file), 900, &cloud, &look, &error))
       fail_msg("%s", error.message);
-    free(column);
   }
   cloud.value = NULL;
   /* the core of the damage picture is light, the crater dark; paper all round is white */
@@ -449,8 +435,6 @@ TEST(pictures) {
   assert_int_equal(picture_particles(at("none.png"), 900, &none, &look, &error), STATUS_USAGE);
   for (size_t k = 0; !keep_pictures && k < sizeof wanted / sizeof *wanted; k++)
     assert_int_equal(unlink(at(wanted[k].file)), 0);
-  picture_cloud_clear(&cloud);
-  sph_fragments_clear(&pieces);
   sph_particles_free(p);
   unlink(at("p.hdf"));
 }

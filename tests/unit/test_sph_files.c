@@ -39,7 +39,7 @@ TEST(fields_hold_what_the_run_reports) {
   double *column, mass = 0, flaws = 0;
   int64_t singles = 0;
   char unit[32];
-  double *heaviest = calloc(cloud.n, sizeof *heaviest);
+  OWNED double *heaviest = calloc(cloud.n, sizeof *heaviest);
   for (size_t i = 0; i < cloud.n; i++) {
     assert_int_equal(cloud.part[i] == 3, i >= run->targets); /* the projectile belongs to no fragment */
     if (cloud.fragment[i] < 0)
@@ -59,7 +59,6 @@ TEST(fields_hold_what_the_run_reports) {
   }
   assert_true(flaws == (double)ran.results.sph.flaws);
   free(column);
-  free(heaviest);
   free(ran.fragments);
   picture_cloud_clear(&cloud);
   unlink(path);

@@ -94,9 +94,9 @@ TEST(owners_are_nearest) {
   const struct sph_body body = sphere(300);
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
-  struct sph_flaws *flaws = flaws_of(&body, p, range, SPH_FLAWS_RANKED, 5, NULL);
+  SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_RANKED, 5, NULL);
   const double log_kv = log(5e34) + log(sph_shape_volume(&body.shape));
-  unsigned char *seen = calloc(flaws->count, 1);
+  OWNED unsigned char *seen = calloc(flaws->count, 1);
   for (size_t i = 0; i < p->n; i++) {
     assert_true(flaws->first[i + 1] > flaws->first[i]); /* each has one */
     for (size_t f = flaws->first[i]; f < flaws->first[i + 1]; f++) {
@@ -113,8 +113,6 @@ TEST(owners_are_nearest) {
       assert_int_equal(brute(p->n, p->x, p->y, p->z, q, SIZE_MAX), i);
     }
   }
-  free(seen);
-  sph_flaws_free(flaws);
   sph_particles_free(p);
 }
 
@@ -124,12 +122,12 @@ TEST(owners_are_nearest) {
 TEST(a_seed_means_the_same_flaws) {
   const struct sph_body coarse = sphere(400), fine = sphere(3000);
   struct sph_range a, b;
-  struct sph_particles *p = make(&coarse, 0, &a), *q = make(&fine, 0, &b);
+  SPH_PARTICLES *p = make(&coarse, 0, &a), *q = make(&fine, 0, &b);
   for (int draw = 0; draw < 2; draw++) {
-    struct sph_flaws *few = flaws_of(&coarse, p, a, draw, 9, NULL), *many = flaws_of(&fine, q, b, draw, 9, NULL);
+    SPH_FLAWS *few = flaws_of(&coarse, p, a, draw, 9, NULL), *many = flaws_of(&fine, q, b, draw, 9, NULL);
     assert_true(many->count > few->count);
-    size_t *owner = malloc(many->count * sizeof *owner);
-    double *sorted = malloc(many->count * sizeof *sorted), *all = malloc(few->count * sizeof *all);
+    OWNED size_t *owner = malloc(many->count * sizeof *owner);
+    OWNED double *sorted = malloc(many->count * sizeof *sorted), *all = malloc(few->count * sizeof *all);
     memcpy(sorted, many->log_strain, many->count * sizeof *sorted);
     memcpy(all, few->log_strain, few->count * sizeof *all);
     qsort(sorted, many->count, sizeof *sorted, sample_ascending);
@@ -157,14 +155,7 @@ TEST(a_seed_means_the_same_flaws) {
         assert_true(apart <
                     1.2 * (a.spacing + b.spacing)); /* each within some 0.8 spacings, at corners of the cut more */
       }
-    free(owner);
-    free(sorted);
-    free(all);
-    sph_flaws_free(few);
-    sph_flaws_free(many);
   }
-  sph_particles_free(p);
-  sph_particles_free(q);
 }
 
 /* About n (ln n + 0.58) flaws, as for random particles, plus one for each particle that got none: 0.56 with equal
@@ -172,21 +163,19 @@ TEST(a_seed_means_the_same_flaws) {
 TEST(particles_have_ln_n_flaws) {
   const struct sph_body body = sphere(2000);
   struct sph_range range;
-  struct sph_particles *p = make(&body, 0, &range);
+  SPH_PARTICLES *p = make(&body, 0, &range);
   double sum = 0;
   for (uint64_t seed = 0; seed < 12; seed++) {
-    struct sph_flaws *flaws = flaws_of(&body, p, range, SPH_FLAWS_POISSON, seed, NULL);
+    SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_POISSON, seed, NULL);
     for (size_t i = 0; i < p->n; i++) {
       assert_true(flaws->first[i + 1] > flaws->first[i]);
       for (size_t f = flaws->first[i] + 1; f < flaws->first[i + 1]; f++)
         assert_true(flaws->log_strain[f] >= flaws->log_strain[f - 1]);
     }
     sum += (double)flaws->count / 12;
-    sph_flaws_free(flaws);
   }
   const double n = (double)p->n, want = n * (log(n) + 0.5772156649);
   assert_true(sum >= want && sum < want + 0.005 * n);
-  sph_particles_free(p);
 }
 
 /* The weakest of the body: mean and CV (0.140 at m = 8.5) of (E/kV)^(1/m). 3000 seeds: the CV's standard error is about
@@ -194,7 +183,7 @@ TEST(particles_have_ln_n_flaws) {
 TEST(the_weakest_scatters_by_the_law) {
   const struct sph_body body = sphere(8);
   struct sph_range range;
-  struct sph_particles *p = make(&body, 0, &range);
+  SPH_PARTICLES *p = make(&body, 0, &range);
   const int seeds = 3000;
   double sum = 0, squares = 0;
   for (int seed = 0; seed < seeds; seed++) {
@@ -202,19 +191,17 @@ TEST(the_weakest_scatters_by_the_law) {
                                      .solid_ratio = 2,
                                      .draw = SPH_FLAWS_POISSON,
                                      .seed = (uint64_t)seed};
-    struct sph_flaws *flaws = place(&law, &body, p, range, NULL);
+    SPH_FLAWS *flaws = place(&law, &body, p, range, NULL);
     double least = HUGE_VAL;
     for (size_t f = 0; f < flaws->count; f++)
       least = fmin(least, flaws->log_strain[f]);
     const double strain = exp(least + (log(5e34) + log(sph_shape_volume(&body.shape) / 2)) / 8.5);
     sum += strain;
     squares += strain * strain;
-    sph_flaws_free(flaws);
   }
   const double mean = sum / seeds, cv = sqrt(squares / seeds - mean * mean) / mean;
   assert_true(fabs(mean / tgamma(1 + 1 / 8.5) - 1) < 0.0105);
   assert_true(fabs(cv / 0.1402 - 1) < 0.06);
-  sph_particles_free(p);
 }
 
 /* Ends have no flaws; the middle has its own, as dense as without ends: the strengths of those places are unchanged. */
@@ -273,7 +260,7 @@ TEST(graded_particles_have_their_weakest) {
        .density = 2940,
        .h_over_spacing = NAN};
   struct sph_range range;
-  struct sph_particles *p = make(&body, 0, &range);
+  SPH_PARTICLES *p = make(&body, 0, &range);
   double most = 0, sum[4] = {0};
   int count[4] = {0}, waited = 0;
   for (size_t i = 0; i < p->n; i++)
@@ -281,7 +268,7 @@ TEST(graded_particles_have_their_weakest) {
   for (uint64_t seed = 0; seed < 8; seed++)
     for (int draw = 0; draw < 2; draw++) {
       const struct sph_flaw_law law = {.weibull = {3, 1.39e18}, .draw = draw, .seed = seed};
-      struct sph_flaws *flaws = NULL;
+      SPH_FLAWS *flaws = NULL;
       assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
       const double n = (double)p->n, common = ceil(n * (log(n) + 0.5772156649015329));
       assert_true((double)flaws->count >= common && (double)flaws->count < common + n);
@@ -293,14 +280,12 @@ TEST(graded_particles_have_their_weakest) {
         sum[size] += exp(3 * flaws->log_strain[flaws->first[i]] + log(1.39e18) + log(volume));
         count[size]++;
       }
-      sph_flaws_free(flaws);
     }
   assert_true(waited > 1000); /* particles of the second kind exist */
   for (int k = 0; k < 4; k++) {
     assert_true(count[k] > 1000);
     assert_true(fabs(sum[k] / count[k] - 1) < 0.05 + 4 / sqrt(count[k]));
   }
-  sph_particles_free(p);
 }
 
 TEST(extremes_of_the_law) {

@@ -16,13 +16,13 @@ static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_
 }
 
 TEST(ranked_is_the_law) {
-  struct sph_flaws *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 3, 500);
+  SPH_FLAWS *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 3, 500);
   for (size_t i = 0; i < 500; i++) {
     assert_true(flaws->first[i + 1] > flaws->first[i]); /* each particle has one */
     for (size_t f = flaws->first[i] + 1; f < flaws->first[i + 1]; f++)
       assert_true(flaws->log_strain[f] >= flaws->log_strain[f - 1]);
   }
-  double *all = malloc(flaws->count * sizeof *all);
+  OWNED double *all = malloc(flaws->count * sizeof *all);
   for (size_t f = 0; f < flaws->count; f++)
     all[f] = flaws->log_strain[f];
   qsort(all, flaws->count, sizeof *all, sample_ascending);
@@ -31,8 +31,6 @@ TEST(ranked_is_the_law) {
   assert_int_equal(grady_kipp_open(flaws, 7, HUGE_VAL), flaws->first[8] - flaws->first[7]);
   assert_int_equal(grady_kipp_open(flaws, 7, -HUGE_VAL), 0);
   assert_int_equal(grady_kipp_open(flaws, 7, flaws->log_strain[flaws->first[7]]), 1);
-  free(all);
-  sph_flaws_free(flaws);
 }
 
 /* Coupon collector: N (ln N + 0.5772) flaws on average, s.d. N pi/sqrt 6; 20 seeds, 5 standard errors. */
@@ -41,9 +39,8 @@ TEST(count_of_flaws) {
   const int seeds = 20;
   double sum = 0;
   for (int s = 0; s < seeds; s++) {
-    struct sph_flaws *flaws = make(9, 4e35, SPH_FLAWS_RANKED, (uint64_t)s, n);
+    SPH_FLAWS *flaws = make(9, 4e35, SPH_FLAWS_RANKED, (uint64_t)s, n);
     sum += (double)flaws->count;
-    sph_flaws_free(flaws);
   }
   double mean = (double)n * (log((double)n) + 0.5772156649), deviation = (double)n * M_PI / sqrt(6.0);
   assert_true(fabs(sum / seeds - mean) < 5 * deviation / sqrt(seeds));
@@ -57,21 +54,18 @@ TEST(scatter_of_the_weakest) {
   for (int c = 0; c < 3; c++) {
     double m = ms[c], sum = 0, squares = 0;
     for (int s = 0; s < seeds; s++) {
-      struct sph_flaws *flaws = make(m, 1e30, SPH_FLAWS_POISSON, (uint64_t)s, 1);
+      SPH_FLAWS *flaws = make(m, 1e30, SPH_FLAWS_POISSON, (uint64_t)s, 1);
       double x = exp(flaws->log_strain[0] - (-log(1e30) - log(1e-5)) / m);
       sum += x;
       squares += x * x;
-      sph_flaws_free(flaws);
     }
     double mean = sum / seeds, cv = sqrt(squares / seeds - mean * mean) / mean;
     double g1 = tgamma(1 + 1 / m), want = sqrt(tgamma(1 + 2 / m) / (g1 * g1) - 1);
     assert_true(fabs(want / (c == 0 ? 0.140 : c == 1 ? 0.077 : 0.363) - 1) < 0.01);
     assert_true(fabs(cv / want - 1) < 0.06);
   }
-  struct sph_flaws *a = make(8.5, 1e30, SPH_FLAWS_RANKED, 1, 1), *b = make(8.5, 1e30, SPH_FLAWS_RANKED, 2, 1);
+  SPH_FLAWS *a = make(8.5, 1e30, SPH_FLAWS_RANKED, 1, 1), *b = make(8.5, 1e30, SPH_FLAWS_RANKED, 2, 1);
   assert_true(a->log_strain[0] == b->log_strain[0]);
-  sph_flaws_free(a);
-  sph_flaws_free(b);
 }
 
 /* Every m from 1 to 200 and k from 1 to 1e200 that a user may type: ln eps_j = (ln j - ln k - ln V)/m to rounding,
@@ -106,7 +100,7 @@ TEST(draws_obey_the_law) {
     double sum = 0, squares = 0, log_strain = (log(want[e]) - log(k) - log(1e-5)) / m;
     size_t in_particle[N] = {0}, all = 0;
     for (int s = 0; s < SEEDS; s++) {
-      struct sph_flaws *flaws = make(m, k, SPH_FLAWS_POISSON, (uint64_t)s, N);
+      SPH_FLAWS *flaws = make(m, k, SPH_FLAWS_POISSON, (uint64_t)s, N);
       double below = 0;
       for (size_t i = 0; i < N; i++) {
         size_t active = grady_kipp_open(flaws, i, log_strain);
@@ -116,7 +110,6 @@ TEST(draws_obey_the_law) {
       }
       sum += below;
       squares += below * below;
-      sph_flaws_free(flaws);
     }
     double mean = sum / SEEDS, variance = squares / SEEDS - mean * mean;
     assert_true(fabs(mean - want[e]) < 5 * sqrt(want[e] / SEEDS));
@@ -129,14 +122,13 @@ TEST(draws_obey_the_law) {
   /* four times N-1 degrees of freedom, each with mean 1 and variance 2 (the four nest, at worst adding up: s.d. 4
    * sqrt(2(N-1))) */
   assert_true(fabs(chi2 - 4 * (N - 1)) < 5 * 4 * sqrt(2.0 * (N - 1)));
-  struct sph_flaws *ranked = make(m, k, SPH_FLAWS_RANKED, 11, N);
+  SPH_FLAWS *ranked = make(m, k, SPH_FLAWS_RANKED, 11, N);
   for (int e = 0; e < 4; e++) {
     size_t below = 0;
     for (size_t i = 0; i < N; i++)
       below += grady_kipp_open(ranked, i, (log(want[e] + 0.5) - log(k) - log(1e-5)) / m);
     assert_int_equal(below, (size_t)want[e]);
   }
-  sph_flaws_free(ranked);
 }
 
 /* Flaws per particle: one body of N = 20 000 particles holds about N (ln N + 0.577) flaws, spread at random over
@@ -144,7 +136,7 @@ TEST(draws_obey_the_law) {
  * sqrt(2/N)), lowest 1 by construction. */
 TEST(counts_per_particle) {
   const size_t n = 20000;
-  struct sph_flaws *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 5, n);
+  SPH_FLAWS *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 5, n);
   double lambda = (double)flaws->count / (double)n, variance = 0;
   size_t fewest = n;
   for (size_t i = 0; i < n; i++) {
@@ -154,7 +146,6 @@ TEST(counts_per_particle) {
   }
   assert_int_equal(fewest, 1);
   assert_true(fabs(variance / lambda - 1) < 5 * sqrt(2.0 / (double)n));
-  sph_flaws_free(flaws);
 }
 
 static size_t only_first(void *context, uint64_t flaw) {

@@ -146,11 +146,9 @@ TEST(a_name_gives_the_values) {
   complete(&r.inputs, r.given);
   ice = good("target: {radius: 5 cm, material: {name: ice, weibull: {m: 7}}}");
   assert_true(sph_derived_crossing(&r.inputs) > crossing && r.inputs.stop.end_time > end);
-  char *a = field_identity(&sph_inputs, &r.inputs), *b = field_identity(&sph_inputs, &ice);
+  OWNED char *a = field_identity(&sph_inputs, &r.inputs), *b = field_identity(&sph_inputs, &ice);
   assert_string_equal(a, b);
   assert_non_null(strstr(a, "target.material.tillotson.E0=0x")); /* the values are in the identity, not only the name */
-  free(a);
-  free(b);
 
   in = good("target: {material: {name: custom, density: 1000 kg/m^3}}");
   assert_true(in.target.material.density == 1000 && isnan(in.target.material.tillotson.A));
@@ -159,7 +157,7 @@ TEST(a_name_gives_the_values) {
 /* Another material in place of a document's own one: none of its values stays, but those that overrides gave. */
 TEST(another_material_drops_those_of_the_document) {
   static const char *const rows[] = {"target.material.density", "target.material.shear_modulus", "target.radius"};
-  struct scene *scene;
+  SCENE scene = NULL;
   struct error error = {0};
   if (scene_parse(
           "custom",
@@ -176,7 +174,6 @@ TEST(another_material_drops_those_of_the_document) {
     assert_non_null(row);
     assert_int_equal(scene->given[row - scene->kind->inputs->rows], i > 0);
   }
-  scene_free(scene);
 }
 
 /* The law of yield under pressure is in the identity only where it is on: a run without it keeps its identity. */
@@ -339,7 +336,6 @@ TEST(pores) {
       strstr(read_text("target: {material: {name: porous-ice, porosity: {exponent_low: 2}}}").report, "two-power"));
   assert_non_null(
       strstr(read_text("target: {material: {name: porous-ice, porosity: {distention: 0.9}}}").report, "at least 1"));
-  char *identity = field_identity(&sph_inputs, &in);
+  OWNED char *identity = field_identity(&sph_inputs, &in);
   assert_null(strstr(identity, "target.material.porosity.distention"));
-  free(identity);
 }

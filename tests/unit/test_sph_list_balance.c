@@ -85,7 +85,7 @@ TEST(every_pair_is_met_once_and_batches_are_whole) {
     const bool odd = variant & 1, periodic = variant & 2;
     const size_t size = variant & 4 ? 400 : MOST + 1;
     const double periods[3] = {periodic && !odd ? SIDE : (double)NAN, NAN, periodic ? 4 * 3.6 : (double)NAN};
-    struct cloud *c = cloud_make(odd);
+    OWNED struct cloud *c = cloud_make(odd);
     struct error error = {0};
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 8 % 3], 1), 0);
     struct sph_neighbours *n = sph_neighbours_create(MOST, size, share, sph_pairs_kernels_choose());
@@ -99,7 +99,6 @@ TEST(every_pair_is_met_once_and_batches_are_whole) {
         assert_true(idle < 0.04);
     }
     sph_neighbours_free(n);
-    free(c);
   }
   unsetenv("CLAST_CPU");
 }

@@ -147,7 +147,7 @@ TEST(an_l_is_filled) {
                                                   .point = {-0.003, 0, 0.0117},
                                                   .radius = 2e-3,
                                                   .growth = NAN};
-    struct sph_particles *p;
+    SPH_PARTICLES *p = NULL;
     struct sph_range range;
     struct error error;
     if (sph_bodies_make(&body, 1, 0, &p, &range, &error))
@@ -165,7 +165,6 @@ TEST(an_l_is_filled) {
     near((double)p->n, 3000, 0.01 * 3000);
     for (int k = 0; k < 3; k++)
       near(third[k], 1. / 3, 0.02);
-    sph_particles_free(p);
   }
 }
 
@@ -187,7 +186,7 @@ TEST(flaws_are_uniform) {
  * not overlap it. */
 TEST(projectile_starts_clear) {
   char text[512];
-  struct scene *scene;
+  SCENE scene = NULL;
   struct error error;
   snprintf(text, sizeof text,
            "engine: sph\nkind: impact\ntarget: {shape: mesh, material: basalt, mesh: {file: %s, unit: 1 cm}}\n"
@@ -204,7 +203,6 @@ TEST(projectile_starts_clear) {
   assert_true(sph_shape_gap(&shape[0], &shape[1]) >= 0.5e-3 * (1 - 1e-9));
   near(flight[2], -cos(M_PI / 3), 1e-12);
   near(sph_derived_target_mass(scene->inputs), 2700 * 3e-6, 1e-12);
-  scene_free(scene);
 }
 
 /* A scene without its file, or with the hash of a file that was not read, is refused with a remedy. */

@@ -21,7 +21,7 @@ static void swap_particles(struct cloud *c, size_t i, size_t j) {
 /* Bounded by n and by pairs, whatever the extent: the cloud, and the same with every third particle spread over 1e12 m.
  */
 TEST(memory_does_not_grow_with_the_extent) {
-  struct cloud *c = cloud_make(SIDE, 1, false, 12);
+  OWNED struct cloud *c = cloud_make(SIDE, 1, false, 12);
   size_t bytes[2];
   for (int flung = 0; flung < 2; flung++) {
     struct sph_pairs *pairs;
@@ -37,7 +37,6 @@ TEST(memory_does_not_grow_with_the_extent) {
   }
   assert_in_range(bytes[0], 100, 1000);
   assert_true(bytes[1] <= bytes[0]);
-  free(c);
 }
 
 /* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into
@@ -47,7 +46,7 @@ TEST(lists_equal_brute_force) {
   static const size_t chunks[] = {4096, 256, 100};
   for (int variant = 0; variant < 24; variant++) {
     const bool periodic = variant & 1, shuffled = variant & 2, odd = variant & 4;
-    struct cloud *c = cloud_make(12, 1, true, 4);
+    OWNED struct cloud *c = cloud_make(12, 1, true, 4);
     double length[3] = {periodic ? 12 : (double)NAN, NAN, periodic ? 15 : (double)NAN};
     for (size_t i = 0; i < c->n; i++)
       c->a[3][i] = periodic ? fmin(c->a[3][i], 3) : c->a[3][i];
@@ -60,7 +59,7 @@ TEST(lists_equal_brute_force) {
       for (int k = 0; k < 3; k++)
         c->a[k][40] = c->a[k][41], c->a[k][1200] = c->a[k][3];
     }
-    struct reference_sph_lists lists;
+    OWNED_BY(reference_sph_lists_free) struct reference_sph_lists lists;
     struct error error = {0};
     const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
     setenv("CLAST_CPU", classes[variant % 3], 1);
@@ -85,8 +84,6 @@ TEST(lists_equal_brute_force) {
       }
       assert_int_equal(lists.count[i], at);
     }
-    reference_sph_lists_free(&lists);
-    free(c);
   }
   unsetenv("CLAST_CPU");
 }
@@ -97,12 +94,12 @@ TEST(shared_lists_join_those_of_their_members) {
   enum { CHUNK = 240 };
   for (int variant = 0; variant < 8; variant++) {
     const size_t share = variant & 1 ? 4 : 2;
-    struct cloud *c = cloud_make(10, 1, variant & 4, 4);
+    OWNED struct cloud *c = cloud_make(10, 1, variant & 4, 4);
     uint64_t seed = 5;
     for (size_t i = c->n; variant & 2 && i-- > 1;)
       swap_particles(c, i, (size_t)((noise(&seed) + 0.5) * (double)i));
     c->a[1][11] = 1e9, c->a[1][26] = -1e9, c->a[0][27] = 1e15, c->a[0][500] = NAN, c->n -= 1;
-    struct reference_sph_lists single;
+    OWNED_BY(reference_sph_lists_free) struct reference_sph_lists single;
     struct error error = {0};
     const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
     assert_int_equal(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error),
@@ -143,24 +140,21 @@ TEST(shared_lists_join_those_of_their_members) {
     }
     free(lists.j);
     sph_neighbours_free(neighbours);
-    reference_sph_lists_free(&single);
-    free(c);
   }
 }
 
 TEST(thin_periodic_boxes_are_refused) {
-  struct cloud *c = cloud_make(4, 1, false, 4);
+  OWNED struct cloud *c = cloud_make(4, 1, false, 4);
   struct reference_sph_lists lists;
   struct error error = {0};
   const double length[3] = {NAN, 4, NAN}, *const place[3] = {c->a[0], c->a[1], c->a[2]};
   assert_int_equal(reference_sph_lists_make(c->n, 64, place, c->a[3], length, 1, &lists, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "too thin"));
-  free(c);
 }
 
 /* Stale exactly when a pair could be missed: each particle may use up its slack by moving or by growing. */
 TEST(lists_wear_out_with_the_slack) {
-  struct cloud *c = cloud_make(6, 1, false, 5);
+  OWNED struct cloud *c = cloud_make(6, 1, false, 5);
   struct sph_pairs *pairs;
   struct error error = {0};
   assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
@@ -175,7 +169,6 @@ TEST(lists_wear_out_with_the_slack) {
   c->a[0][7] = x + 0.6 * c->slack[7], c->a[3][7] = h + 0.6 * c->slack[7];
   assert_true(slack_of(c, pairs) < 0);
   sph_pairs_free(pairs);
-  free(c);
 }
 
 /* Entries of shared lists have bits for the neighbour's number, and bits for the members it belongs to. */

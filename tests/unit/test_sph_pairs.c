@@ -127,7 +127,7 @@ TEST(kernels_equal_plain_c) {
   static const double scales[] = {1, 1e-7, 1e6};
   for (int variant = 0; variant < 16; variant++) {
     const double spacing = scales[variant % 3], length = 18 * spacing;
-    struct cloud *c = cloud_make(18, spacing, variant % 4 == 3, (uint64_t)variant + 1);
+    OWNED struct cloud *c = cloud_make(18, spacing, variant % 4 == 3, (uint64_t)variant + 1);
     struct sph_pair_options options = usual;
     options.strength = variant & 1;
     options.method.volume_weights = variant & 2;
@@ -135,29 +135,26 @@ TEST(kernels_equal_plain_c) {
       options.periodic[0] = options.periodic[2] = length;
     if (variant & 8 && options.strength)
       options.artificial_stress.epsilon = 0.3;
-    struct summed *exact = reference(c, &options);
+    OWNED struct summed *exact = reference(c, &options);
     for (int k = 0; k < 3; k++)
       for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
         double worst[4];
         assert_int_equal(setenv("CLAST_CPU", classes[k], 1), 0);
         options.fidelity.precision = precision;
-        struct summed *s = sum(c, &options);
+        OWNED struct summed *s = sum(c, &options);
         compare(c, s, exact, worst);
         for (int q = 0; q < 4; q++)
           if (!(worst[q] < (precision == SPH_FLOAT ? 3e-5 : 1e-13)))
             fail_msg("variant %d, class %s, %s, kind %d: %g", variant, classes[k], precision ? "float" : "double", q,
                      worst[q]);
-        free(s);
       }
-    free(exact);
-    free(c);
   }
   unsetenv("CLAST_CPU");
 }
 
 TEST(momentum_is_conserved) {
-  struct cloud *c = cloud_make(SIDE, 1, true, 1);
-  struct summed *s = sum(c, &usual);
+  OWNED struct cloud *c = cloud_make(SIDE, 1, true, 1);
+  OWNED struct summed *s = sum(c, &usual);
   double total[3] = {0}, scale = 0;
   for (size_t i = 0; i < c->n; i++) {
     for (int k = 0; k < 3; k++)
@@ -166,7 +163,6 @@ TEST(momentum_is_conserved) {
   }
   for (int k = 0; k < 3; k++)
     assert_true(fabs(total[k]) < 1e-13 * scale);
-  free(s), free(c);
 }
 
 /* The gradient is the conjugate of the forces, with volumes and with the correction too: sum m v.a + sum m sigma/rho :
@@ -174,13 +170,13 @@ TEST(momentum_is_conserved) {
 TEST(work_equals_strain_energy) {
   for (int variant = SANITIZED ? 32 : 0; variant < 3 * 16; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 16], 1), 0);
-    struct cloud *c = cloud_make(SIDE, 1, true, 2);
+    OWNED struct cloud *c = cloud_make(SIDE, 1, true, 2);
     struct sph_pair_options options = usual;
     options.method.volume_weights = variant & 1;
     options.gradient_correction.on = variant & 2;
     options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
     options.artificial_stress.epsilon = variant & 8 ? 0.3 : 0; /* its work is in the heating, of either sign */
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     double work = 0, strain = 0, heat = 0, scale = 0;
     for (size_t i = 0; i < c->n; i++) {
       double m = c->a[7][i];
@@ -202,7 +198,6 @@ TEST(work_equals_strain_energy) {
         given += c->a[7][i] * s->power[i];
       assert_true(fabs(given - strain) < (variant & 4 ? 1e-6 : 1e-12) * scale);
     }
-    free(s), free(c);
   }
   unsetenv("CLAST_CPU");
 }
@@ -212,7 +207,7 @@ TEST(corrected_gradient_is_linear) {
   static const double g[9] = {0.3, -1, 0.2, 1, 0.1, 0.5, -0.2, 0.7, -0.4};
   for (int variant = SANITIZED ? 16 : 0; variant < 3 * 8; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
-    struct cloud *c = cloud_make(12, 1, false, 3);
+    OWNED struct cloud *c = cloud_make(12, 1, false, 3);
     for (size_t i = 0; i < c->n; i++)
       for (int a = 0; a < 3; a++)
         c->a[4 + a][i] = 5 + g[3 * a] * c->a[0][i] + g[3 * a + 1] * c->a[1][i] + g[3 * a + 2] * c->a[2][i];
@@ -221,11 +216,10 @@ TEST(corrected_gradient_is_linear) {
     options.method.volume_weights = variant & 1;
     options.artificial_stress.epsilon = variant & 2 ? 0.3 : 0;
     options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     for (size_t i = 0; i < c->n; i++)
       for (int k = 0; k < 9; k++)
         assert_true(fabs(s->a[3 + k][i] - g[k]) < (variant & 4 ? 1e-4 : 1e-11));
-    free(s), free(c);
   }
   unsetenv("CLAST_CPU");
 }
@@ -233,7 +227,7 @@ TEST(corrected_gradient_is_linear) {
 /* Each pair once, however lists are cut into chunks: equal masses, no stress and unit volume weights, so that each
  * particle's sum is the number of others within the mean of both supports. */
 TEST(each_pair_is_summed_once) {
-  struct cloud *c = cloud_make(SIDE, 1, true, 9);
+  OWNED struct cloud *c = cloud_make(SIDE, 1, true, 9);
   size_t pairs = 0;
   for (size_t i = 0; i < c->n; i++)
     for (size_t j = i + 1; j < c->n; j++) {
@@ -244,23 +238,21 @@ TEST(each_pair_is_summed_once) {
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
     options.fidelity.precision = precision;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     /* float may decide otherwise for a pair within 1e-6 of the edge: a handful of 3e5 */
     assert_true(fabs(s->neighbours * (double)c->n - 2.0 * (double)pairs) <= (precision == SPH_FLOAT ? 20 : 0.01));
-    free(s);
   }
-  free(c);
 }
 
 /* Without deviators forces are along the line between two particles: sum m x cross a = 0. Viscosity included. With the
  * correction also with deviators, whatever the stress. */
 TEST(angular_momentum_is_conserved) {
   for (int corrected = 0; corrected < 2; corrected++) {
-    struct cloud *c = cloud_make(SIDE, 1, !corrected, 10);
+    OWNED struct cloud *c = cloud_make(SIDE, 1, !corrected, 10);
     struct sph_pair_options options = usual;
     options.strength = corrected;
     options.gradient_correction.on = corrected;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     double total[3] = {0}, scale = 0;
     for (size_t i = 0; i < c->n; i++)
       for (int k = 0; k < 3; k++) {
@@ -270,7 +262,6 @@ TEST(angular_momentum_is_conserved) {
       }
     for (int k = 0; k < 3; k++)
       assert_true(fabs(total[k]) < 1e-12 * scale); /* 1e4 roundings of either sign */
-    free(s), free(c);
   }
 }
 
@@ -290,14 +281,14 @@ static void cloud_break(struct cloud *c) {
 TEST(surfaces_keep_energy_and_momenta) {
   for (int variant = SANITIZED ? 16 : 0; variant < 3 * 8; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
-    struct cloud *c = cloud_make(SIDE, 1, false, 5);
+    OWNED struct cloud *c = cloud_make(SIDE, 1, false, 5);
     cloud_break(c);
     struct sph_pair_options options = usual;
     options.gradient_correction.on = true;
     options.crack_surfaces.on = variant & 1;
     options.reconstruction.on = variant & 2;
     options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     double sums[7] = {0}, scale[7] = {0}, between = 0; /* momentum, its moment, energy */
     for (size_t i = 0; i < c->n; i++) {
       const double m = c->a[7][i];
@@ -317,7 +308,6 @@ TEST(surfaces_keep_energy_and_momenta) {
     for (int k = 0; k < 7; k++)
       if (!(fabs(sums[k]) < (variant & 4 ? 1e-6 : 1e-12) * scale[k]))
         fail_msg("variant %d, sum %d: %g of %g", variant, k, sums[k], scale[k]);
-    free(s), free(c);
   }
   unsetenv("CLAST_CPU");
 }
@@ -329,7 +319,7 @@ TEST(loose_neighbours_are_not_felt) {
   for (int variant = 0; variant < 3 * 4; variant++) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 4], 1), 0);
     const bool surfaces = variant & 1;
-    struct cloud *c = cloud_make(12, 1, false, 3);
+    OWNED struct cloud *c = cloud_make(12, 1, false, 3);
     for (size_t i = 0; i < c->n; i++) {
       const bool loose = i % 7 == 0;
       c->damage[i] = loose, c->factor[i] = loose ? 0 : c->factor[i], c->a[10][i] = loose ? 0 : c->a[10][i];
@@ -341,7 +331,7 @@ TEST(loose_neighbours_are_not_felt) {
     options.gradient_correction.on = true;
     options.crack_surfaces.on = surfaces;
     options.fidelity.precision = variant & 2 ? SPH_FLOAT : SPH_DOUBLE;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     double off = 0, pulled = 0, usual_pull = 0, partly = 0;
     for (size_t i = 0; i < c->n; i++)
       for (int k = 0; k < 9; k++)
@@ -355,7 +345,6 @@ TEST(loose_neighbours_are_not_felt) {
     assert_true(surfaces ? off < rounding : off > 0.01);
     assert_true(partly < 9 * 10); /* corners */
     assert_true(surfaces ? pulled == 0 : pulled > 0.01 * usual_pull);
-    free(s), free(c);
   }
   unsetenv("CLAST_CPU");
 }
@@ -366,26 +355,24 @@ TEST(debris_is_not_corrected) {
   struct sph_pair_options options = usual;
   options.gradient_correction.on = true;
   for (int layer = 0; layer < 2; layer++) {
-    struct cloud *c = cloud_make(8, 1, false, 31);
+    OWNED struct cloud *c = cloud_make(8, 1, false, 31);
     c->n = layer ? 64 : 5;
     for (size_t i = 0; i < c->n; i++) {
       c->a[0][i] = (double)(i % 8), c->a[1][i] = layer ? (double)(i / 8) : 0.3 * (double)(i % 2),
       c->a[2][i] = layer ? 0 : 0.1 * (double)(i % 3);
     }
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     for (size_t i = 0; i < c->n; i++)
       for (int k = 0; k < 6; k++)
         assert_true(s->correction[k][i] == (k == 0 || k == 3 || k == 5));
-    free(s), free(c);
   }
-  struct cloud *c = cloud_make(8, 1, false, 31);
+  OWNED struct cloud *c = cloud_make(8, 1, false, 31);
   for (size_t i = 0; i < c->n; i++) {
     c->a[4][i] = c->a[1][i], c->a[5][i] = -c->a[0][i], c->a[6][i] = 0;
   }
-  struct summed *s = sum(c, &options);
+  OWNED struct summed *s = sum(c, &options);
   for (size_t i = 0; i < c->n; i++)
     assert_true(fabs(s->a[4][i] - 1) < 1e-11 && fabs(s->a[6][i] + 1) < 1e-11);
-  free(s), free(c);
 }
 
 /* A body under one stress throughout feels forces at its surface only, and over a cut through it they add up to that
@@ -396,7 +383,7 @@ TEST(one_stress_over_a_cut) {
   const double density = 2, spacing = 1, sigma[6] = {3, 0.5, -0.25, 1, 0.75, 2}, mean = (3 + 1 + 2) / 3.0;
   double off[2];
   for (int corrected = 0; corrected < 2; corrected++) {
-    struct cloud *c = cloud_make(ACROSS, spacing, false, 21);
+    OWNED struct cloud *c = cloud_make(ACROSS, spacing, false, 21);
     for (size_t i = 0; i < c->n; i++) {
       for (int d = 0; d < 3; d++)
         c->a[d][i] = floor(c->a[d][i]) + 0.5;
@@ -408,7 +395,7 @@ TEST(one_stress_over_a_cut) {
     }
     struct sph_pair_options options = usual;
     options.gradient_correction.on = corrected;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     double force[3] = {0};
     for (size_t i = 0; i < c->n; i++)
       if (c->a[0][i] < ACROSS / 2.0)
@@ -418,7 +405,6 @@ TEST(one_stress_over_a_cut) {
     off[corrected] = 0;
     for (int k = 0; k < 3; k++)
       off[corrected] = fmax(off[corrected], fabs(force[k] / area - sigma[k]));
-    free(s), free(c);
   }
   print_message("force over a cut off by %.3g without, %.3g with the correction\n", off[0], off[1]);
   assert_true(off[1] < 1e-12);
@@ -428,7 +414,7 @@ TEST(one_stress_over_a_cut) {
 /* Particles that fly apart uniformly feel no viscosity, those that approach do, and it slows them: the sign of eq. 4's
  * missing term. Two particles, by hand: r = h, v.r < 0. */
 TEST(viscosity_of_two_by_hand) {
-  struct cloud *c = cloud_make(2, 1, false, 11);
+  OWNED struct cloud *c = cloud_make(2, 1, false, 11);
   c->n = 2;
   for (int i = 0; i < 2; i++) {
     for (int k = 0; k < 11; k++)
@@ -438,7 +424,7 @@ TEST(viscosity_of_two_by_hand) {
     c->a[0][i] = i, c->a[3][i] = 1, c->a[7][i] = 2, c->a[8][i] = 4, c->a[9][i] = 3;
     c->a[4][i] = i ? -0.5 : 0.5; /* approach at 1 */
   }
-  struct summed *s = sum(c, &usual);
+  OWNED struct summed *s = sum(c, &usual);
   const double mu = -1 / 1.01, viscous = (3 * mu * mu - 1.5 * 3 * mu) / 4, slope = -0.75 / M_PI; /* W'(1), h = 1 */
   assert_true(fabs(s->a[0][0] - 2 * viscous * slope) < 1e-14); /* a_0 = -m Pi W' (x_0 - x_1)/r: pushed back */
   assert_true(s->a[0][0] < 0 && fabs(s->a[0][0] + s->a[0][1]) < 1e-15);
@@ -448,20 +434,19 @@ TEST(viscosity_of_two_by_hand) {
               1e-15); /* dv_x/dx = m/rho (v_1 - v_0) W' (x_0 - x_1)/r: compression */
   for (int i = 0; i < 2; i++)
     c->a[4][i] *= -1;
-  struct summed *apart = sum(c, &usual);
+  OWNED struct summed *apart = sum(c, &usual);
   assert_true(apart->a[0][0] == 0 && apart->a[12][0] == 0 && apart->a[13][0] == 0);
-  free(s), free(apart), free(c);
 }
 
 /* What is not finite neither crashes nor hangs a search or a sum, and lists are stale at once. */
 TEST(not_finite_does_no_harm) {
-  struct cloud *c = cloud_make(10, 1, true, 13);
+  OWNED struct cloud *c = cloud_make(10, 1, true, 13);
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
   struct sph_pairs *pairs;
   struct error error = {0};
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
-    struct summed *s = calloc(1, sizeof *s);
+    OWNED struct summed *s = calloc(1, sizeof *s);
     options.fidelity.precision = precision;
     assert_int_equal(sph_pairs_create(c->n, &options, &pairs, &error), STATUS_OK);
     struct sph_pair_fields f = fields_of(c);
@@ -476,47 +461,42 @@ TEST(not_finite_does_no_harm) {
       c->a[k][5 + k] = x;
     }
     sph_pairs_free(pairs);
-    free(s);
   }
-  free(c);
 }
 
 /* Sums restore the caller's floating-point mode: subnormal numbers are not flushed there. */
 TEST(tiny_numbers_stay_the_callers) {
-  struct cloud *c = cloud_make(4, 1, false, 14);
+  OWNED struct cloud *c = cloud_make(4, 1, false, 14);
   volatile double least = 0x1p-1022;
   free(sum(c, &usual));
   assert_true(least / 2 > 0);
-  free(c);
 }
 
 TEST(coincident_particles_do_no_harm) {
-  struct cloud *c = cloud_make(10, 1, false, 6);
+  OWNED struct cloud *c = cloud_make(10, 1, false, 6);
   for (int k = 0; k < 3; k++)
     c->a[k][11] = c->a[k][10];
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
     options.fidelity.precision = precision;
-    struct summed *s = sum(c, &options);
+    OWNED struct summed *s = sum(c, &options);
     for (int k = 0; k < SUMS; k++)
       for (size_t i = 0; i < c->n; i++)
         assert_true(isfinite(s->a[k][i]));
-    free(s);
   }
-  free(c);
 }
 
 /* The sums in float are near those in double; frees the cloud. */
 static void check_float(struct cloud *c) {
   struct sph_pair_options options = usual;
-  struct summed *exact = reference(c, &options);
+  OWNED struct summed *exact = reference(c, &options);
   double worst[4];
   options.fidelity.precision = SPH_FLOAT;
-  struct summed *s = sum(c, &options);
+  OWNED struct summed *s = sum(c, &options);
   compare(c, s, exact, worst);
   for (int q = 0; q < 4; q++)
     assert_true(worst[q] < 3e-5);
-  free(s), free(exact), free(c);
+  free(c);
 }
 
 /* The same scene 1000 km from the origin: double keeps the precision of its positions, float loses no more than that.
@@ -542,22 +522,19 @@ TEST(float_holds_sizes_far_apart) {
 
 /* So many chunks that some are unpacked while others are summed; with the correction and artificial stress on, too. */
 TEST(bits_do_not_depend_on_threads) {
-  struct cloud *c = cloud_make(LARGE, 1, true, 8);
+  OWNED struct cloud *c = cloud_make(LARGE, 1, true, 8);
   for (int variant = 0; variant < 3; variant++) {
     struct sph_pair_options options = usual;
     options.fidelity.precision = variant == 1 ? SPH_FLOAT : SPH_DOUBLE;
     options.gradient_correction.on = variant == 2;
     options.artificial_stress.epsilon = variant ? 0.3 : 0;
-    struct summed *one = sum(c, &options);
+    OWNED struct summed *one = sum(c, &options);
     for (int threads = 2; threads <= 3; threads++) {
       options.fidelity.threads = threads;
-      struct summed *s = sum(c, &options);
+      OWNED struct summed *s = sum(c, &options);
       assert_memory_equal(s, one, sizeof *s);
-      free(s);
     }
-    free(one);
   }
-  free(c);
 }
 /* The particles first .. last - 1 of a cloud. */
 static struct cloud *part_of(const struct cloud *c, size_t first, size_t last) {
@@ -611,8 +588,8 @@ static void check_foreign(const struct cloud *c, const struct sph_pair_options *
  * and their pairs are in the rows. Tolerances as for kernels_equal_plain_c. */
 TEST(bodies_apart_are_alone) {
   static const size_t end[] = {0, 1001, 1778}; /* odd, so that two bodies share a list */
-  struct cloud *c = cloud_make(15, 1, true, 11);
-  uint8_t *body = malloc(c->n);
+  OWNED struct cloud *c = cloud_make(15, 1, true, 11);
+  OWNED uint8_t *body = malloc(c->n);
   assert_non_null(body);
   for (size_t i = 0; i < c->n; i++)
     body[i] = (uint8_t)((i >= end[1]) + (i >= end[2]));
@@ -621,11 +598,11 @@ TEST(bodies_apart_are_alone) {
     options.fidelity.precision = alone.fidelity.precision = variant & 1 ? SPH_FLOAT : SPH_DOUBLE;
     options.gradient_correction.on = alone.gradient_correction.on = variant & 2;
     options.body = body;
-    struct summed *all = sum(c, &options);
+    OWNED struct summed *all = sum(c, &options);
     for (int b = 0; b < 3; b++) {
       const size_t last = b < 2 ? end[b + 1] : c->n;
-      struct cloud *part = part_of(c, end[b], last);
-      struct summed *own = sum(part, &alone);
+      OWNED struct cloud *part = part_of(c, end[b], last);
+      OWNED struct summed *own = sum(part, &alone);
       for (int k = 0; k < SUMS; k++) {
         double scale = 0;
         for (size_t i = 0; i < part->n; i++)
@@ -633,12 +610,7 @@ TEST(bodies_apart_are_alone) {
         for (size_t i = 0; i < part->n; i++)
           assert_true(fabs(all->a[k][end[b] + i] - own->a[k][i]) <= (variant & 1 ? 1e-4 : 1e-12) * scale);
       }
-      free(own);
-      free(part);
     }
-    free(all);
     check_foreign(c, &options);
   }
-  free(body);
-  free(c);
 }

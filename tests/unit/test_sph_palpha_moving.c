@@ -30,17 +30,15 @@ static void near(double got, double want, double tolerance, const char *what) {
 /* A cube of basalt with pores (or none), 6^3 particles, strength; flaws too strong to open. */
 static struct sph_system *cube(const struct sph_palpha_material *porosity, bool strength, bool flaws, size_t *count) {
   struct case_block block = {.count = {6, 6, 6}, .spacing = 1e-3};
-  struct sph_particles *p = case_make(&block, 1, 2700 / (porosity ? porosity->distention : 1), 1.05,
-                                      SPH_WITH_STRESS | SPH_WITH_DAMAGE);
-  struct sph_flaws *list = flaws ? case_flaws(p->n, 1e-30, 1, 0) : NULL;
+  SPH_PARTICLES *p = case_make(&block, 1, 2700 / (porosity ? porosity->distention : 1), 1.05,
+                               SPH_WITH_STRESS | SPH_WITH_DAMAGE);
+  SPH_FLAWS *list = flaws ? case_flaws(p->n, 1e-30, 1, 0) : NULL;
   struct sph_body_physics body = {.material = case_basalt, .strength = strength, .flaws = list};
   if (porosity)
     body.material.palpha = *porosity;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   *count = p->n;
-  sph_flaws_free(list);
-  sph_particles_free(p);
   return s;
 }
 
@@ -54,7 +52,7 @@ TEST(loop_is_the_formula) {
   const struct sph_palpha_material *given[] = {&porous_basalt, &two_power};
   for (uint64_t round = 0; round < 60; round++) {
     size_t n;
-    struct sph_system *s = cube(given[round % 2], false, false, &n);
+    SPH_SYSTEM *s = cube(given[round % 2], false, false, &n);
     const struct sph_palpha_law *law = s->solid[0].prepared[SPH_MODULE_palpha];
     double rest[216], alpha[216], rho[216], u[216];
     int crushed = 0, solid = 0, elastic = 0;
@@ -81,14 +79,13 @@ TEST(loop_is_the_formula) {
     }
     if (crushed < 10 || solid < 10 || elastic < 10)
       fail_msg("%d crushed, %d solid, %d elastic", crushed, solid, elastic);
-    sph_system_free(s);
   }
 }
 
 /* S is the bulk deviator: alpha S holds while alpha changes. */
 TEST(deviator_follows_alpha) {
   size_t n;
-  struct sph_system *s = cube(&porous_basalt, true, false, &n);
+  SPH_SYSTEM *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++) {
     for (int k = 0; k < 5; k++)
       s->c.stress[k][i] = 1e6 * (k + 1);
@@ -102,13 +99,12 @@ TEST(deviator_follows_alpha) {
     moved |= s->c.distention[i] == 1;
   }
   assert_true(moved);
-  sph_system_free(s);
 }
 
 /* dS/dt = (f/alpha) 2 mu dev(eps) + R S - S R: simple shear at 1/s, stress-free. */
 TEST(shear_rate) {
   size_t n;
-  struct sph_system *s = cube(&porous_basalt, true, false, &n);
+  SPH_SYSTEM *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++)
     s->c.density[i] = 1800 * (1 + 0.6 * (double)i / (double)n);
   respond(s);
@@ -129,12 +125,11 @@ TEST(shear_rate) {
     }
   }
   assert_true(lowest < 0.2); /* crushing matter hardly resists shear */
-  sph_system_free(s);
 }
 
 TEST(yield_falls_with_alpha) {
   size_t n;
-  struct sph_system *s = cube(&porous_basalt, true, false, &n);
+  SPH_SYSTEM *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++) {
     s->c.distention[i] = 1 + 0.5 * (double)i / (double)n;
     for (int k = 0; k < 5; k++)
@@ -146,13 +141,12 @@ TEST(yield_falls_with_alpha) {
     double J2 = xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz;
     near(sqrt(3 * J2), 3.5e9 / s->c.distention[i], 1, "yield stress"); /* the bulk Y/alpha */
   }
-  sph_system_free(s);
 }
 
 /* The tension limit is that of the porous body, whatever its distention. It falls as far as the solid has expanded. */
 TEST(tension_limit_is_of_the_body) {
   size_t n;
-  struct sph_system *s = cube(&porous_basalt, false, false, &n);
+  SPH_SYSTEM *s = cube(&porous_basalt, false, false, &n);
   s->solid[0].physics.material.tension_limit.pressure = 1e6;
   for (size_t i = 0; i < n; i++) {
     const double expanded = i % 3 == 0 ? 1 : i % 3 == 1 ? 0.95 : 0.9; /* of the solid: whole, half torn, torn */
@@ -168,14 +162,13 @@ TEST(tension_limit_is_of_the_body) {
          : i % 3 == 1 ? -5e5
                       : 0,
          1e-6, "pressure"); /* a dozen roundings of 1e6 */
-  sph_system_free(s);
 }
 
 /* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change causes no damage. */
 TEST(damage_adds_up) {
   for (int flaws = 0; flaws < 2; flaws++) {
     size_t n;
-    struct sph_system *s = cube(&porous_basalt, true, flaws, &n);
+    SPH_SYSTEM *s = cube(&porous_basalt, true, flaws, &n);
     assert_true(!s->c.flaw_damage == !flaws);
     for (int step = 0; step < 3; step++) { /* loaded, unloaded, loaded again */
       for (size_t i = 0; i < n; i++) {
@@ -193,7 +186,6 @@ TEST(damage_adds_up) {
       assert_true(s->c.rest_distention[0] == 1.5 && s->c.compaction[0] == 0);
       assert_true(s->c.rest_distention[n - 1] == 1 && s->c.damage[n - 1] == 1);
     }
-    sph_system_free(s);
   }
 }
 
@@ -251,7 +243,7 @@ TEST(solid_bits) {
   case_steps(a.s, 60);
   case_steps(b.s, 60);
   size_t na, nb;
-  void *sa = saved(a.s, &na), *sb = saved(b.s, &nb);
+  OWNED void *sa = saved(a.s, &na), *sb = saved(b.s, &nb);
   assert_int_equal(na, nb);
   assert_memory_equal(sa, sb, na);
   assert_int_equal(a.s->arena_doubles, b.s->arena_doubles);
@@ -261,8 +253,6 @@ TEST(solid_bits) {
   assert_null(a.s->c.compaction);
   assert_null(a.s->c.flaw_damage);
   assert_int_equal(a.s->solid[0].before_count, b.s->solid[0].before_count);
-  free(sa);
-  free(sb);
   impact_end(&a);
   impact_end(&b);
 }
@@ -310,17 +300,14 @@ TEST(restart) {
   struct impact a = impact_of(&porous_basalt, &two_power, true), b = impact_of(&porous_basalt, &two_power, true);
   case_steps(a.s, 40);
   size_t size;
-  void *bytes = saved(a.s, &size);
+  OWNED void *bytes = saved(a.s, &size);
   assert_true(sph_system_state_load(b.s, bytes, size));
-  free(bytes);
   case_steps(a.s, 40);
   case_steps(b.s, 40);
   size_t na, nb;
-  void *sa = saved(a.s, &na), *sb = saved(b.s, &nb);
+  OWNED void *sa = saved(a.s, &na), *sb = saved(b.s, &nb);
   assert_int_equal(na, nb);
   assert_memory_equal(sa, sb, na);
-  free(sa);
-  free(sb);
   impact_end(&a);
   impact_end(&b);
 }
@@ -354,7 +341,7 @@ TEST(tends_to_the_solid) {
 
 TEST(refused) {
   struct case_block block = {.count = {3, 3, 3}, .spacing = 1e-3};
-  struct sph_particles *p = case_make(&block, 1, 1800, 1.05, SPH_WITH_DISTENTION);
+  SPH_PARTICLES *p = case_make(&block, 1, 1800, 1.05, SPH_WITH_DISTENTION);
   struct sph_body_physics body = {.material = case_basalt};
   struct sph_palpha_material *bad = &body.material.palpha;
   *bad = porous_basalt;
@@ -368,5 +355,4 @@ TEST(refused) {
   p->distention[5] = 1.6;
   assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "distention"));
-  sph_particles_free(p);
 }

@@ -22,7 +22,7 @@ TEST(conserved) {
 /* The sums themselves, written again: a ledger with a wrong sign or factor would be conserved as well. */
 TEST(ledger_by_hand) {
   const struct case_block block = {{4, 3, 5}, {-1e-3, 2e-3, 5e-3}, {3, -7, 11}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, 0);
   double kinetic = 0, internal = 0, px = 0, py = 0, pz = 0, lx = 0, ly = 0, lz = 0, scale = 0;
   for (size_t i = 0; i < p->n; i++) {
     p->mass[i] *= 1 + 0.01 * (double)i, p->energy[i] = 10 + (double)i;
@@ -34,7 +34,7 @@ TEST(ledger_by_hand) {
   }
   const struct sph_body_physics fluid = {.material = case_basalt};
   const struct case_parameters parameters = case_parameters_default();
-  struct sph_system *s = case_system(p, 1, &fluid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &fluid, &parameters);
   const struct sph_ledger l = sph_system_ledger(s);
   const double got[] = {l.kinetic,
                         l.internal,
@@ -49,8 +49,6 @@ TEST(ledger_by_hand) {
   for (int k = 0; k < 9; k++)
     assert_true(want[k] != 0 && fabs(got[k] / want[k] - 1) < 1e-12); /* the order of sums */
   assert_true(l.work_of_held == 0 && l.damped == 0 && l.clamped == 0 && l.density_held == 0);
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 static double seen_signal[4096], seen_divergence[4096];
@@ -147,8 +145,8 @@ static struct sph_particles *seen_in_flight(const double boost[3], double step[B
 TEST(boosted) {
   const double rest[3] = {0, 0, 0}, boost[3] = {100, -60, 80};
   double step[2][BOOSTED_STEPS], time[2], apart = 0, uneven = 0;
-  struct sph_particles *at_rest = seen_in_flight(rest, step[0], &time[0]);
-  struct sph_particles *flying = seen_in_flight(boost, step[1], &time[1]);
+  SPH_PARTICLES *at_rest = seen_in_flight(rest, step[0], &time[0]);
+  SPH_PARTICLES *flying = seen_in_flight(boost, step[1], &time[1]);
   for (int k = 0; k < BOOSTED_STEPS; k++)
     uneven = fmax(uneven, fabs(step[1][k] / step[0][k] - 1));
   for (size_t i = 0; i < at_rest->n; i++)
@@ -157,8 +155,6 @@ TEST(boosted) {
   print_message("steps differ by %.1e, places by %.1e of the spacing\n", uneven, apart / spacing);
   assert_true(time[0] * 2e4 > 2 * spacing);
   assert_true(uneven < 1e-9 && apart < 1e-9 * spacing); /* rounding: 1e-16, grown by the blow and by the lists' order */
-  sph_particles_free(at_rest);
-  sph_particles_free(flying);
 }
 
 /* h^3 rho is conserved while matter is compressed and expands, within the bounds of h. */
@@ -184,7 +180,7 @@ TEST(h_follows_density) {
 /* Damping as strong as three Courant steps allow: motion dies out and no energy is gained. */
 TEST(fast_damping) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 10}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMPING);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMPING);
   const struct sph_body_physics body = {.material = case_basalt, .strength = true};
   const struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &body, &parameters);
@@ -202,7 +198,6 @@ TEST(fast_damping) {
   assert_true(last.kinetic < 1e-4 * first.kinetic && last.damped > 0.9 * first.kinetic &&
               last.damped < 1.6 * first.kinetic);
   sph_system_free(s);
-  sph_particles_free(p);
 }
 
 /* A block's slack is never above the smallest slack of its particles; when used up it is computed again. So no list
@@ -244,7 +239,7 @@ TEST(flaws_open_by_the_damaged_stress) {
   } cases[] = {{2, 0.8, 0, true},       {2, 0.8, 0.5, false}, {2, 1.01, 0, false},
                {2.7, 0.8, 0.5, true},   {0.6, -0.5, 0, true}, {0.6, -0.5, 0.5, true},
                {0.6, -0.3, 0.5, false}, {1.01, 0, 0.9, true}, {3, -3, 1, false}};
-  double *weakest = malloc(s->n * sizeof *weakest);
+  OWNED double *weakest = malloc(s->n * sizeof *weakest);
   memcpy(weakest, s->c.weakest, s->n * sizeof *weakest);
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     for (size_t i = 0; i < s->n; i++) {
@@ -261,7 +256,6 @@ TEST(flaws_open_by_the_damaged_stress) {
       if ((s->c.damage_rate[i] > 0) != cases[k].opens)
         fail_msg("case %zu: rate %g", k, s->c.damage_rate[i]);
   }
-  free(weakest);
   sph_system_free(s);
   let_go(&c);
 }
@@ -437,7 +431,7 @@ TEST(absent) {
  */
 TEST(held) {
   const struct case_block block = {{6, 6, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_HELD | SPH_WITH_DAMPING);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_HELD | SPH_WITH_DAMPING);
   for (size_t i = 0; i < p->n; i++) {
     if (p->z[i] > 10e-3)
       p->held[i] = SPH_HELD_Z, p->vz[i] = 40;
@@ -448,7 +442,7 @@ TEST(held) {
   }
   const struct sph_body_physics solid = {.material = case_basalt, .strength = true};
   const struct case_parameters parameters = case_parameters_default();
-  struct sph_system *s = case_system(p, 1, &solid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
   const double first = case_total(sph_system_ledger(s));
   case_run(s, 10e-6);
   const struct sph_ledger last = sph_system_ledger(s);
@@ -463,6 +457,4 @@ TEST(held) {
     if (p->held[i] > SPH_HELD_Z)
       assert_true(p->vx[i] == 0 && p->vz[i] == 0);
   }
-  sph_system_free(s);
-  sph_particles_free(p);
 }

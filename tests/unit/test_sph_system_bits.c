@@ -10,12 +10,10 @@ static size_t everything(const struct sph_system *s, unsigned char **bytes) {
 }
 
 static void assert_same_bits(const struct sph_system *a, const struct sph_system *b) {
-  unsigned char *left, *right;
+  OWNED unsigned char *left = NULL, *right = NULL;
   const size_t size = everything(a, &left);
   assert_int_equal(size, everything(b, &right));
   assert_memory_equal(left, right, size);
-  free(left);
-  free(right);
 }
 
 TEST(restarted) {
@@ -24,7 +22,7 @@ TEST(restarted) {
   struct sph_system *again = case_system(c.particles, 2, c.physics, &c.parameters);
   for (int cut = 0; cut < 3; cut++) {
     case_steps(whole, 37);
-    unsigned char *bytes;
+    OWNED unsigned char *bytes = NULL;
     const size_t size = everything(whole, &bytes);
     for (size_t k = 0; k < again->block_count; k++)
       again->block[k].slack = 1; /* of where its particles were before */
@@ -32,7 +30,6 @@ TEST(restarted) {
     for (size_t k = 0; k < again->block_count; k++)
       assert_true(again->block[k].slack < 0); /* to be looked up: the lists may be all but worn */
     assert_false(sph_system_state_load(again, bytes, size - 1));
-    free(bytes);
     case_steps(whole, 41);
     case_steps(again, 41);
     assert_same_bits(whole, again);
@@ -86,10 +83,9 @@ TEST(every_module) {
     c.parameters.in.fidelity.threads = 2;
     struct sph_system *again = case_system(c.particles, 2, c.physics, &c.parameters);
     case_steps(whole, 45);
-    unsigned char *bytes;
+    OWNED unsigned char *bytes = NULL;
     const size_t size = everything(whole, &bytes);
     assert_true(sph_system_state_load(again, bytes, size)); /* in the middle, and with other threads */
-    free(bytes);
     case_steps(whole, 45);
     case_steps(again, 45);
     assert_same_bits(whole, again);
@@ -190,7 +186,7 @@ TEST(renumbered) {
   }
   const struct sph_body_physics solid = {.material = case_basalt, .strength = true};
   const struct case_parameters parameters = case_parameters_default();
-  struct sph_system *a = case_system(p, 1, &solid, &parameters), *b = case_system(q, 1, &solid, &parameters);
+  SPH_SYSTEM *a = case_system(p, 1, &solid, &parameters), *b = case_system(q, 1, &solid, &parameters);
   case_steps(a, 50);
   case_steps(b, 50);
   sph_system_read(a, p);
@@ -200,8 +196,6 @@ TEST(renumbered) {
     assert_true(p->x[k] == q->x[i] && p->vy[k] == q->vy[i] && p->stress[1][k] == q->stress[1][i] &&
                 p->energy[k] == q->energy[i]);
   }
-  sph_system_free(a);
-  sph_system_free(b);
   sph_particles_free(p);
   sph_particles_free(q);
 }

@@ -28,7 +28,7 @@ TEST(fast) {
  * joule. */
 TEST(clamps) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, 0);
   for (size_t i = 0; i < p->n;
        i++) { /* tension at u = 0: contraction of a stretched solid takes from u what is not there */
     p->density[i] = 2600;
@@ -38,7 +38,7 @@ TEST(clamps) {
   struct case_parameters parameters = case_parameters_default();
   parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0; /* no heating: it would hide the clamp */
   parameters.in.fidelity.cfl = 0.03;                                /* the integrator's own error small beside it */
-  struct sph_system *s = case_system(p, 1, &fluid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &fluid, &parameters);
   const double first = case_total(sph_system_ledger(s));
   case_steps(s, 300);
   const struct sph_ledger last = sph_system_ledger(s);
@@ -48,27 +48,23 @@ TEST(clamps) {
   sph_system_read(s, p);
   for (size_t i = 0; i < p->n; i++)
     assert_true(p->energy[i] >= 0);
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 /* Density does not fall below its bound; energy is conserved. */
 TEST(thin) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, 0);
   for (size_t i = 0; i < p->n; i++)
     p->energy[i] = 5e7; /* vapour */
   const struct sph_body_physics fluid = {.material = case_basalt};
   struct case_parameters parameters = case_parameters_default();
   parameters.domain.lowest_density = 0.5;
-  struct sph_system *s = case_system(p, 1, &fluid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &fluid, &parameters);
   case_steps(s, 150);
   assert_true(sph_system_ledger(s).density_held > 0);
   sph_system_read(s, p);
   for (size_t i = 0; i < p->n; i++)
     assert_true(p->density[i] >= 0.5 * 2700);
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 /* The bound itself: that of a particle alone, m W(0) at the largest h it may have. (Of thinner matter P/rho^2 has no
@@ -84,19 +80,17 @@ TEST(not_thinner_than_alone) {
   const double alone = 1 / (M_PI * pow(SPH_HIGHEST_H * SPH_BODIES_H, 3)); /* of the density at rest */
   assert_true(parameters.domain.lowest_density > 0.8 * alone && parameters.domain.lowest_density < 2 * alone);
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700.0 / 50, 1.21, SPH_WITH_DISTENTION);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700.0 / 50, 1.21, SPH_WITH_DISTENTION);
   for (size_t i = 0; i < p->n; i++)
     p->distention[i] = 50;
   struct sph_body_physics body = {.material = case_basalt};
   body.material.palpha = pores;
-  struct sph_system *s = case_system(p, 1, &body, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &body, &parameters);
   case_steps(s, 3);
   assert_true(sph_system_ledger(s).density_held == 0);
   sph_system_read(s, p);
   for (size_t i = 0; i < p->n; i++)
     assert_true(fabs(p->density[i] - 54) < 1e-9);
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 TEST(lost) {

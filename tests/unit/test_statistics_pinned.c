@@ -71,7 +71,7 @@ static void of_samples(void) {
         const struct sample_interval i = sample_jackknife(n, 0.95, middle, values);
         SAY("jackknife", i.estimate, i.standard_error, i.half_width);
       }
-      struct scatter scatter = {0};
+      OWNED_BY(scatter_release) struct scatter scatter = {0};
       if (scatter_make(n, values, &scatter, NULL) == STATUS_OK && scatter.n > 0) {
         summaries("scatter", &scatter.mean);
         SAY("shape", (double)scatter.n, scatter.skewness, scatter.dip, scatter.dip_share, scatter.lower_mode,
@@ -83,7 +83,6 @@ static void of_samples(void) {
         const struct scatter_histogram h = scatter_histogram_of(&scatter, 0);
         SAY("histogram", (double)h.bins, h.from, h.width, (double)h.count[0], (double)h.count[h.bins / 2]);
       }
-      scatter_release(&scatter);
     }
   for (size_t n = 0; n < 200; n += n < 6 ? 1 : 37) {
     size_t each = 0;
@@ -217,13 +216,12 @@ static void spectra(const struct pooled_runs *runs) {
                                       .size = {.density = form & 2 ? 2700 : 0, .dimensions = form & 4 ? 2 : 3},
                                       .units = form & 4 ? 3 : 0,
                                       .first_run = form & 4 ? units : NULL};
-    struct pooled_bin *bins = NULL;
+    OWNED struct pooled_bin *bins = NULL;
     size_t count = 0;
     if (pooled_spectrum(runs, &given, &bins, &count, NULL) == STATUS_OK)
       for (size_t b = 0; b < count; b += 5)
         SAY("bin", bins[b].bin, bins[b].lower, bins[b].upper, (double)bins[b].count, bins[b].mass, bins[b].value,
             bins[b].half_width);
-    free(bins);
     SAY("form", pooled_spectrum_exponent(&given, 1.8), pooled_spectrum_half_width(&given, 0.1));
   }
 }
@@ -436,13 +434,12 @@ static void of_nothing(void) {
 }
 
 TEST(numbers_stay) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   assert_non_null(out = open_memstream(&text, &size));
   of_samples(), of_pairs(), of_ladders(), of_masses(), of_inputs(), of_points(), of_nothing();
   fclose(out);
   pinned_same("unit/statistics.txt", text, 1e-8);
-  free(text);
 }
 
 static void part(void *context) {

@@ -131,7 +131,7 @@ TEST(interval_is_that_in_c) {
     const double mean = means[i % 7], deviation = deviations[i / 7 % 6];
     const size_t n = numbers[i / 42 % 12];
     const struct sample_range *range = &ranges[i / 504];
-    char *sql = NULL;
+    OWNED char *sql = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&sql, &size);
     fputs("SELECT format('%.17g,%.17g,%.17g,%d,%s', coalesce(q_hw95, 'nan'), q_low95, q_high95, q_weak, "
@@ -145,7 +145,6 @@ TEST(interval_is_that_in_c) {
     fclose(out);
     struct rows rows = {.count = 0};
     OK(ask(store, sql, &rows));
-    free(sql);
     struct sample_moments moments = {n, mean, deviation * deviation * ((double)n - 1), 1};
     struct sample_summary s = sample_summarise_moments(&moments, 0.95);
     sample_in_range(&s, range, 0.95);

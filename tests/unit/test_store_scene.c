@@ -15,7 +15,7 @@ static void populate(const char *path) {
   struct store *store = NULL;
   OK(store_open_writer(path, &store, NULL, 0, &error));
   for (size_t i = 0; i < scene_builtin_count(); i++) {
-    struct scene *scene = NULL;
+    SCENE scene = NULL;
     int64_t point = 0, again = 0;
     OK(scene_load(scene_builtin_name(i), NULL, &scene, &error));
     OK(store_add_point(store, 0, scene, 0, NULL, &point, &error));
@@ -23,7 +23,7 @@ static void populate(const char *path) {
     assert_true(point == again);
     struct fragment fragments[2] = {{.mass = 3, .count = 3}, {.mass = 1, .count = 1}};
     struct outcome outcome = {.state = OUTCOME_COMPLETED};
-    void *result = calloc(1, scene->kind->results->size);
+    OWNED void *result = calloc(1, scene->kind->results->size);
     struct estimate estimates[ESTIMATES_COUNT];
     field_defaults(scene->kind->results, result);
     outcome_fragments(&outcome, 2, fragments, &(struct outcome_small){.dust = NAN});
@@ -40,8 +40,6 @@ static void populate(const char *path) {
                             .attempt = 1};
     scene_identity(scene, run.seed, run.identity);
     OK(store_add_run(store, &run, &error));
-    free(result);
-    scene_free(scene);
   }
   OK(store_close(store, &error));
 }

@@ -70,10 +70,10 @@ static char *schema_text(void) {
 
 TEST(committed_text_is_the_schema) {
   static const char path[] = CLAST_SOURCE_DIR "/schemas/results.sql";
-  char *made = schema_text();
+  OWNED char *made = schema_text();
   assert_non_null(made);
   size_t size = strlen(made);
-  char *committed = calloc(1, size + 2);
+  OWNED char *committed = calloc(1, size + 2);
   FILE *in = fopen(path, "r");
   if (!in)
     fail_msg("schemas/results.sql is missing: " REMEDY);
@@ -81,12 +81,10 @@ TEST(committed_text_is_the_schema) {
   fclose(in);
   if (got != size || memcmp(made, committed, size) != 0)
     fail_msg("schemas/results.sql is not the schema any more: " REMEDY);
-  free(committed);
-  free(made);
 }
 
 TEST(text_makes_the_same_store) {
-  char *sql = schema_text();
+  OWNED char *sql = schema_text();
   sqlite3 *db = run_text(sql);
   assert_int_equal(integer(db, "ATTACH 'test-store-schema.db' AS real"), -1);
   assert_int_equal(
@@ -101,11 +99,10 @@ TEST(text_makes_the_same_store) {
   assert_int_equal(integer(db, "PRAGMA main.application_id"), integer(db, "PRAGMA real.application_id"));
   assert_int_equal(integer(db, "PRAGMA main.user_version"), integer(db, "PRAGMA real.user_version"));
   sqlite3_close(db);
-  free(sql);
 }
 
 TEST(every_column_is_documented) {
-  char *sql = schema_text();
+  OWNED char *sql = schema_text();
   sqlite3 *db = run_text(sql);
   sqlite3_stmt *statement = NULL;
   sqlite3_prepare_v2(
@@ -134,11 +131,10 @@ TEST(every_column_is_documented) {
     if (strncmp(end + (*end == '\n'), "CREATE VIEW", 11) == 0)
       break;
   }
-  free(sql);
 }
 
 TEST(every_table_is_strict) {
-  char *sql = schema_text();
+  OWNED char *sql = schema_text();
   sqlite3 *db = run_text(sql);
   assert_int_equal(
       integer(db, "SELECT count(*) FROM pragma_table_list WHERE type = 'table' AND schema = 'main' AND name NOT "
@@ -146,7 +142,6 @@ TEST(every_table_is_strict) {
       0);
   assert_int_equal(integer(db, "SELECT count(*) FROM pragma_table_list WHERE name = 'result_dem'"), 1);
   sqlite3_close(db);
-  free(sql);
 }
 
 /* Main results are numbers in every run that counts, and the states that SQL text names are those of outcome_table. */
@@ -238,9 +233,8 @@ TEST(canned_queries_know_the_real_columns) {
 
 int main(int count, char **arguments) {
   if (count == 2 && strcmp(arguments[1], "print") == 0) {
-    char *text = schema_text();
+    OWNED char *text = schema_text();
     fputs(text, stdout);
-    free(text);
     return 0;
   }
   return check_run(NULL, NULL);

@@ -226,10 +226,8 @@ TEST(merge_takes_any_number_of_runs) {
     if (store_check(store, line, problem, &error) != STATUS_OK)
       fail_msg("%s", problem);
     OK(store_close(store, &error));
-    char *x = dump(target), *y = dump(whole);
+    OWNED char *x = dump(target), *y = dump(whole);
     assert_string_equal(x, y);
-    free(x);
-    free(y);
   }
 }
 
@@ -314,9 +312,7 @@ TEST(export_is_whole_and_single) {
   assert_int_equal(store_export(store, "no-such-folder/x.db", &error), STATUS_IO);
   assert_int_equal(sqlite3_exec(store->db, "DELETE FROM run", NULL, NULL, NULL), SQLITE_READONLY);
   store_close(store, NULL);
-  char *x = dump(path), *y = dump(copy);
+  OWNED char *x = dump(path), *y = dump(copy);
   assert_string_equal(x, y);
-  free(x);
-  free(y);
   fixture_path(path, "export"); /* removes both files */
 }

@@ -27,9 +27,8 @@ static char *print_rows(enum table_format format, int rows) {
 }
 
 TEST(test_csv) {
-  char *text = print_rows(TABLE_CSV, 2);
+  OWNED char *text = print_rows(TABLE_CSV, 2);
   assert_string_equal(text, "name,speed,n\n\"a \"\"b\"\", c\",0.1,0\nplain,,-1\n");
-  free(text);
 }
 
 TEST(test_json) {
@@ -60,7 +59,7 @@ TEST(test_text) {
 
 /* The half width stands in the cell of its value, which leaves its range for nobody; a rare column is hidden. */
 TEST(test_half_widths) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   TABLE table = table_new(TABLE_BARE, out);
@@ -76,7 +75,6 @@ TEST(test_half_widths) {
                             "0.8 (0.4 to 1)  0.8 ± 0.4\n"
                             "   0.80 ± 0.10  0.8 ± 0.4\n");
   assert_true(table_hides(table, "rare") && !table_hides(table, "any"));
-  free(text);
 }
 
 /* The ends of an interval stand in the cell of its value, with the mark; programs see three columns. */
@@ -85,7 +83,7 @@ TEST(test_intervals) {
                                          "10^33\n               -\n",
                                          "value,low,high\n0.42,0.161,0.806\n2e+33,,\n,,\n"};
   for (int programs = 0; programs < 2; programs++) {
-    char *text = NULL;
+    OWNED char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     TABLE table = table_new(programs ? TABLE_CSV : TABLE_BARE, out);
@@ -97,14 +95,13 @@ TEST(test_intervals) {
     assert_int_equal(table_end(table, NULL), STATUS_OK);
     fclose(out);
     assert_string_equal(text, expected[programs]);
-    free(text);
   }
 }
 
 /* A table for people cannot control the terminal: neither its cells nor its names and units. */
 TEST(test_text_is_harmless) {
   static const char *const hostile[] = {"a\x1b[2J\x07", "b\x08\x7f", "\xc2\x9b\x9b\xc3\xa9", "\r\n\t"};
-  char *text = NULL;
+  OWNED char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   TABLE table = table_new(TABLE_TEXT, out);
@@ -123,7 +120,6 @@ TEST(test_text_is_harmless) {
   }
   assert_int_equal(lines, 2);
   assert_int_equal(letters, 3);
-  free(text);
 }
 
 /* CSV neither controls the terminal nor runs in a spreadsheet, and our reader gets the texts back. */
@@ -150,7 +146,7 @@ TEST(test_csv_is_harmless) {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char *text = NULL, expected[100], wanted[100];
     size_t size = 0;
-    struct csv csv;
+    OWNED_BY(csv_close) struct csv csv;
     FILE *out = open_memstream(&text, &size);
     TABLE table = table_new(TABLE_CSV, out);
     table_column(table, cases[i].text, NULL);
@@ -164,7 +160,6 @@ TEST(test_csv_is_harmless) {
     snprintf(wanted, sizeof wanted, "%s", cases[i].text);
     text_make_plain(wanted, "\t\n");
     assert_string_equal(csv.cells[0].text + strspn(csv.cells[0].text, " \t\n"), wanted + strspn(wanted, " \t\n"));
-    csv_close(&csv);
     free(text);
   }
 }
@@ -172,7 +167,7 @@ TEST(test_csv_is_harmless) {
 TEST(test_numbers_round_trip) {
   static const double numbers[] = {0.1, 1.0 / 3, 1e300, 5e-324, -0.0, 123456789.123456789, 2.0000000000000004};
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-    char *text = NULL;
+    OWNED char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     TABLE table = table_new(TABLE_CSV, out);
@@ -182,7 +177,6 @@ TEST(test_numbers_round_trip) {
     fclose(out);
     double back = strtod(strchr(text, '\n'), NULL);
     assert_memory_equal(&back, &numbers[i], sizeof back);
-    free(text);
   }
 }
 
@@ -201,13 +195,12 @@ TEST(test_strings) {
       {"\xe2\x80\xae\xe2\x81\xa6\xe2\x80\xaf", "\"\\u202e\\u2066\xe2\x80\xaf\""}, /* U+202E reverses what follows */
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    char *text = NULL;
+    OWNED char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     text_json_string(cases[i].text, out);
     fclose(out);
     assert_string_equal(text, cases[i].json);
-    free(text);
   }
 }
 

@@ -97,7 +97,7 @@ static const double tolerance = 1e-12; /* in units of spacing and spacing^2: the
 
 /* Compares a tessellation (spacing 1, origin chosen so that world = lattice coordinates) with the reference. */
 static void compare(const struct dem_tessellation *t, const struct oracle *o, uint32_t columns, uint32_t centre) {
-  uint32_t *cell_of = malloc(o->n * sizeof *cell_of);
+  OWNED uint32_t *cell_of = malloc(o->n * sizeof *cell_of);
   memset(cell_of, 0xff, o->n * sizeof *cell_of);
   for (uint32_t c = 0; c < t->cell_count; c++)
     cell_of[(t->grid_y[c] + centre) * columns + t->grid_x[c] + centre] = c;
@@ -129,7 +129,6 @@ static void compare(const struct dem_tessellation *t, const struct oracle *o, ui
       }
     assert_true(found);
   }
-  free(cell_of);
 }
 
 TEST(block_equals_qhull) {
@@ -148,7 +147,7 @@ TEST(block_equals_qhull) {
         assert_int_equal(dem_tessellation_points(&lattice, &points, NULL), STATUS_OK);
         size_t n = (size_t)points.columns * points.rows;
         /* walls by mirror images: the bisector of a point and its image is the wall */
-        double *all = malloc(10 * n * sizeof *all);
+        OWNED double *all = malloc(10 * n * sizeof *all);
         for (size_t i = 0; i < n; i++) {
           double x = points.point[i].x, y = points.point[i].y;
           const double copies[5][2] = {{x, y},
@@ -173,7 +172,6 @@ TEST(block_equals_qhull) {
         assert_true(fabs(sum - (double)n) < 1e-12 * (double)n); /* cells fill the rectangle */
         dem_tessellation_free(t);
         oracle_free(&o);
-        free(all);
         free(points.point);
       }
 }
@@ -226,7 +224,7 @@ TEST(neighbours_share_vertices) {
                                   .origin = {3.7, -11.1},
                                   .seed = seed,
                                   .stream = 2};
-    struct dem_tessellation *t;
+    DEM_TESSELLATION *t = NULL;
     assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
     for (size_t p = 0; p < t->pair_count; p++) {
       const uint32_t *pair = t->pair[p];
@@ -246,13 +244,12 @@ TEST(neighbours_share_vertices) {
         assert_true(turn > -1e-13 * lattice.spacing * lattice.spacing);
       }
     }
-    dem_tessellation_free(t);
   }
 }
 
 TEST(no_disorder_is_the_square_lattice) {
   struct dem_lattice lattice = {.outline = DEM_OUTLINE_BLOCK, .spacing = 0.5, .columns = 9, .rows = 7, .seed = 1};
-  struct dem_tessellation *t;
+  DEM_TESSELLATION *t = NULL;
   assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
   assert_int_equal(t->pair_count, 9 * 6 + 8 * 7);
   for (uint32_t c = 0; c < t->cell_count; c++) {
@@ -263,7 +260,6 @@ TEST(no_disorder_is_the_square_lattice) {
   }
   for (size_t p = 0; p < t->pair_count; p++)
     assert_true(fabs(t->side[p] - 0.5) < 1e-14);
-  dem_tessellation_free(t);
 }
 
 TEST(streams_and_seeds_differ_and_repeat) {
@@ -300,7 +296,7 @@ TEST(a_larger_disc_holds_the_smaller_one) {
                                   .disorder = 1,
                                   .radius = 1.5,
                                   .seed = seed};
-    struct dem_tessellation *a, *b;
+    DEM_TESSELLATION *a = NULL, *b = NULL;
     assert_int_equal(dem_tessellation_make(&lattice, &a, NULL), STATUS_OK);
     lattice.radius = 3;
     assert_int_equal(dem_tessellation_make(&lattice, &b, NULL), STATUS_OK);
@@ -313,8 +309,6 @@ TEST(a_larger_disc_holds_the_smaller_one) {
       within += found;
     }
     assert_int_equal(within, a->cell_count);
-    dem_tessellation_free(a);
-    dem_tessellation_free(b);
   }
 }
 
@@ -326,7 +320,7 @@ static uint32_t root(uint32_t *parent, uint32_t i) {
 
 /* Number of bodies that the pairs join. */
 static size_t bodies(const struct dem_tessellation *t) {
-  uint32_t *parent = malloc(t->cell_count * sizeof *parent);
+  OWNED uint32_t *parent = malloc(t->cell_count * sizeof *parent);
   for (uint32_t c = 0; c < t->cell_count; c++)
     parent[c] = c;
   size_t count = t->cell_count;
@@ -335,7 +329,6 @@ static size_t bodies(const struct dem_tessellation *t) {
     count -= a != b;
     parent[a] = b;
   }
-  free(parent);
   return count;
 }
 
@@ -369,7 +362,7 @@ TEST(rings_are_whole) {
                                     .disorder = 1,
                                     .radius = radius,
                                     .seed = seed};
-      struct dem_tessellation *disc, *ring;
+      DEM_TESSELLATION *disc = NULL, *ring = NULL;
       assert_int_equal(dem_tessellation_make(&lattice, &disc, NULL), STATUS_OK);
       lattice.hole = hole;
       assert_int_equal(dem_tessellation_make(&lattice, &ring, NULL), STATUS_OK);
@@ -393,8 +386,6 @@ TEST(rings_are_whole) {
         if (seed < ROUGH)
           rough += (inner - hole) * (inner - hole);
       }
-      dem_tessellation_free(disc);
-      dem_tessellation_free(ring);
     }
     /* The area of one ring scatters by 2 and 0.8 %; points stay in their squares, so the mean keeps an error of 1 %. */
     const double exact = M_PI * (radius * radius - hole * hole);
@@ -410,11 +401,10 @@ TEST(ten_thousand_cells_in_time) {
   for (int i = 0; i < 5; i++) {
     struct dem_lattice lattice =
         {.outline = DEM_OUTLINE_BLOCK, .spacing = 1, .disorder = 1, .columns = 100, .rows = 100, .seed = 3};
-    struct dem_tessellation *t;
+    DEM_TESSELLATION *t = NULL;
     clock_t start = clock();
     assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
     best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
-    dem_tessellation_free(t);
   }
   print_message("10 000 cells: %.1f ms\n", 1e3 * best);
   /* the requirement is 50 ms in a release build on a quiet core; sanitizers and other load need a margin */

@@ -58,13 +58,12 @@ TEST(test_percent) {
 }
 
 static void assert_wrapped(const char *text, size_t width, const char *lines) {
-  char *wrapped;
+  OWNED char *wrapped = NULL;
   size_t size;
   FILE *out = open_memstream(&wrapped, &size);
   text_wrap(text, 0, 0, width, out);
   fclose(out);
   assert_string_equal(wrapped, lines);
-  free(wrapped);
 }
 
 TEST(test_wrap_keeps_numbers_and_commands) {
@@ -91,8 +90,7 @@ TEST(test_numbers_for_people) {
                                                                    "10^33 m^-3; 2 s^-1, in 1/s"},
                                   {"", ""}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    char *text = text_people(cases[i][0]);
+    OWNED char *text = text_people(cases[i][0]);
     assert_string_equal(text, cases[i][1]);
-    free(text);
   }
 }

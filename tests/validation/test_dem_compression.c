@@ -19,10 +19,9 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
   assert_int_equal(run->state.frame.outcome_state, OUTCOME_COMPLETED);
   struct outcome outcome;
   struct dem_results r;
-  struct fragment *fragments;
+  OWNED struct fragment *fragments = NULL;
   size_t count;
   assert_int_equal(dem_report_finish(run, &outcome, &r, &fragments, &count, NULL), STATUS_OK);
-  free(fragments);
   struct figures f = {.modulus = r.young_modulus,
                       .strength = r.strength,
                       .strain = r.failure_strain,

@@ -34,7 +34,7 @@ static struct result run(const char *name, uint64_t seed, const char *particles,
   struct scene *scene;
   struct error error = {0};
   void *made = NULL;
-  struct fragment *fragments = NULL;
+  OWNED struct fragment *fragments = NULL;
   size_t count;
   bool finished = false;
   if (scene_load(name, NULL, &scene, &error) || scene_set_text(scene, "fidelity.particles", particles, &error) ||
@@ -51,7 +51,6 @@ static struct result run(const char *name, uint64_t seed, const char *particles,
   struct sph_run *inside = made;
   struct sph_crater_options options = sph_report_crater_options(inside);
   r.layers = sph_crater_profile(inside->start, inside->now, &options, r.axis, sizeof r.axis / sizeof r.axis[0]);
-  free(fragments);
   scene->kind->free(made);
   scene_free(scene);
   if (!(r.outcome.energy_error < 0.005))

@@ -97,7 +97,7 @@ static inline void fixture_place(struct dem_system *s, uint32_t grain, double x,
 /* Forces at the current positions, on a system at rest: a step so short that nothing can move. */
 static inline void fixture_evaluate(struct dem_system *s) {
   double *const columns[6] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle, s->c.vx, s->c.vy, s->c.spin};
-  double *kept = calloc(6 * s->padded, sizeof *kept);
+  OWNED double *kept = calloc(6 * s->padded, sizeof *kept);
   for (int k = 0; k < 6; k++) {
     memcpy(kept + (size_t)k * s->padded, columns[k], s->padded * sizeof *kept);
     memset(columns[k], 0, s->padded * sizeof *kept);
@@ -106,7 +106,6 @@ static inline void fixture_evaluate(struct dem_system *s) {
   assert_true(dem_system_step(s));
   for (int k = 0; k < 6; k++)
     memcpy(columns[k], kept + (size_t)k * s->padded, s->padded * sizeof *kept);
-  free(kept);
 }
 
 static inline double fixture_potential(struct dem_system *s) {

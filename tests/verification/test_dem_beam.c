@@ -40,10 +40,10 @@ static void stiffness(struct dem_system *s, size_t freedoms, double arm, double 
 
 /* Two bonded squares: the stiffness is Timoshenko's, symmetric, three zero modes, none negative. */
 TEST(stiffness_is_timoshenko) {
-  struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   double k[36];
   stiffness(s, 6, h, k);
   /* b = 2a is G = E/2; phi = 12 EI/(G S l^2) = 2 for a square beam. */
@@ -72,16 +72,14 @@ TEST(stiffness_is_timoshenko) {
   assert_int_equal(zero, 3);
   gsl_eigen_symm_free(work);
   gsl_vector_free(values);
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* Force = -dU/du at large deformations, and momentum and angular momentum balance there. */
 TEST(force_is_the_energys_gradient) {
-  struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   uint64_t seed = 1;
   for (int trial = 0; trial < 50; trial++) {
     const double turn = 3.0 * fixture_random(&seed);
@@ -112,14 +110,12 @@ TEST(force_is_the_energys_gradient) {
     const double about = s->c.x[0] * f[1] - s->c.y[0] * f[0] + f[2] + s->c.x[1] * f[4] - s->c.y[1] * f[3] + f[5];
     fixture_near(about, 0.0, 1e-14 * largest * h * 10.0, "angular momentum"); /* some roundings of l F */
   }
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* A beam rotated as a whole, by any angle and several turns, has no forces; exchanging its ends exchanges the forces.
  */
 TEST(rotation_and_swap) {
-  struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
   struct dem_system *s = fixture_create(t, &in);
@@ -149,17 +145,16 @@ TEST(rotation_and_swap) {
   for (size_t a = 0; a < 6; a++)
     fixture_near(f[0][a], (a % 3 == 2 ? 1.0 : -1.0) * f[1][(a + 3) % 6],
                  1e-12 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0), "swap");
-  dem_tessellation_free(t);
 }
 
 /* 20 beams of 1 cm, S = 1 cm, E 5e9 dyn/cm^2, clamped: P L^3 / 3EI + P L / GS = 6.408e-6 cm per dyn. */
 TEST(cantilever) {
-  struct dem_tessellation *t = fixture_squares(21, 1, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(21, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   const size_t all = 63, n = 60;
-  double *k = calloc(all * all, sizeof *k);
+  OWNED double *k = calloc(all * all, sizeof *k);
   stiffness(s, all, h, k);
   gsl_matrix *m = gsl_matrix_alloc(n, n);
   gsl_vector *load = gsl_vector_calloc(n), *u = gsl_vector_alloc(n);
@@ -180,17 +175,14 @@ TEST(cantilever) {
   gsl_vector_free(u);
   gsl_vector_free(load);
   gsl_matrix_free(m);
-  free(k);
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* A square lattice of squares, pulled: only the beams along the pull act, and K_ext = E. */
 TEST(square_lattice_modulus) {
   const uint32_t n = 6;
-  struct dem_tessellation *t = fixture_squares(n, n, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(n, n, h, 0.0, true);
   const struct dem_inputs in = fixture_inputs(); /* contact is on: pulled grains do not touch */
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   const double strain = 1e-4;
   for (uint32_t i = 0; i < n * n; i++)
     fixture_place(s, i, t->centroid[i].x, t->centroid[i].y * (1.0 + strain), 0.0);
@@ -205,6 +197,4 @@ TEST(square_lattice_modulus) {
       top += s->c.fy[i];
   }
   fixture_near(-top / (n * h) / strain, in.beam.young_modulus, 1e-9 * in.beam.young_modulus, "K_ext");
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }

@@ -9,12 +9,12 @@
 TEST(driven_grains_do_work) {
   for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; integrator++)
     for (int which = 0; which < 3; which++) {
-      struct dem_tessellation *t = fixture_squares(2, 2, 0.01, 0.0, true);
+      DEM_TESSELLATION *t = fixture_squares(2, 2, 0.01, 0.0, true);
       struct dem_inputs in = fixture_inputs();
       in.contact.law = DEM_CONTACT_OFF; /* smooth: what remains is the integrator's error */
       in.fidelity.integrator = integrator;
       in.fidelity.time_step = 2e-7;
-      struct dem_system *s = fixture_create(t, &in);
+      DEM_SYSTEM *s = fixture_create(t, &in);
       dem_system_hold(s, 0, which == 0 ? 1u : which == 1 ? 2u : 4u);
       const double before = fixture_total(dem_system_ledger(s));
       for (int k = 0; k < 2000; k++) {
@@ -32,8 +32,6 @@ TEST(driven_grains_do_work) {
       assert_true(l.beam + l.kinetic > 0.5 * l.external_work);
       /* trapezoids of a force that changes within (2/15 us)^-1: (0.2/15)^2/12 = 1.5e-5 of what goes to and fro */
       fixture_near(fixture_total(l), before, 1e-3 * l.external_work, "work");
-      dem_system_free(s);
-      dem_tessellation_free(t);
     }
 }
 
@@ -116,10 +114,10 @@ TEST(modes_of_breaking) {
                {0.1, 0.985, 0.2, 0, 0}, {0.8, 0.37, 0.1, 1, 0}, {0.8, 0.35, 0.1, 0, 0},  {0.6, -0.1, 0.65, 1, 1},
                {0.6, 0.1, 0.63, 0, 0},  {-1.5, 0.0, 0.0, 0, 0}, {-0.1, 3.0, 3.0, 0, 0}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+    DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 0.0, true);
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
-    struct dem_system *s = fixture_create(t, &in);
+    DEM_SYSTEM *s = fixture_create(t, &in);
     fixture_place(s, 0, t->centroid[0].x, t->centroid[0].y, cases[k].first * in.threshold.angle);
     fixture_place(s, 1, t->centroid[1].x + 0.01 * cases[k].strain * in.threshold.strain, t->centroid[1].y,
                   cases[k].second * in.threshold.angle);
@@ -132,8 +130,6 @@ TEST(modes_of_breaking) {
       fail_msg("case %zu: bending %d", k, (int)log[0].bending);
     if (breaks)
       fixture_near(log[0].strain, cases[k].strain * in.threshold.strain, 1e-12, "strain logged");
-    dem_system_free(s);
-    dem_tessellation_free(t);
   }
 }
 
@@ -181,9 +177,9 @@ TEST(strength_of_a_square_lattice) {
 
 /* Mass and moment of inertia of every grain by triangles of its outline, in long double. */
 TEST(grains_have_their_inertia) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01, 1.0, 2);
   const struct dem_inputs in = fixture_inputs();
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   for (uint32_t i = 0; i < t->cell_count; i++) {
     long double area = 0, moment = 0;
     for (uint32_t v = t->first_vertex[i]; v < t->first_vertex[i + 1]; v++) {
@@ -202,19 +198,17 @@ TEST(grains_have_their_inertia) {
     fixture_near(g.moment_of_inertia, (double)(in.grain.density * moment), 1e-12 * g.moment_of_inertia,
                  "moment of inertia");
   }
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* Thresholds drawn per beam: of a Weibull law ln t has the mean ln t0 - gamma/m and the standard deviation pi/(m sqrt
  * 6). */
 TEST(thresholds_are_weibulls) {
-  struct dem_tessellation *t = fixture_disc(0.2, 0.01, 1.0, 2);
+  DEM_TESSELLATION *t = fixture_disc(0.2, 0.01, 1.0, 2);
   struct dem_inputs in = fixture_inputs();
   const double m = 4.0, n = (double)t->pair_count;
   in.threshold.breaking = true;
   in.threshold.modulus = m;
-  struct dem_system *s = NULL;
+  DEM_SYSTEM *s = NULL;
   assert_int_equal(dem_system_create(t, &in, 11, &s, NULL), STATUS_OK);
   double sum[2] = {0}, square[2] = {0}, both = 0;
   for (size_t k = 0; k < t->pair_count; k++) {
@@ -232,8 +226,6 @@ TEST(thresholds_are_weibulls) {
     fixture_near(sqrt(square[q] - sum[q] * sum[q]), spread, 5.0 * spread * sqrt(4.4 / 4.0 / n), "spread of ln t");
   }
   fixture_near((both - sum[0] * sum[1]) / (spread * spread), 0.0, 5.0 / sqrt(n), "correlation of the two");
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* Thresholds of the pair of two lattice squares over the scene's, by their place in the bond blocks; false: no such
@@ -286,15 +278,15 @@ static struct dem_tessellation *renumbered(const struct dem_tessellation *t) {
 
 /* One seed gives a beam the same thresholds in a larger body, and for any numbering of its grains. */
 TEST(thresholds_belong_to_places) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2), *larger = fixture_disc(0.09, 0.01, 1.0, 2);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01, 1.0, 2), *larger = fixture_disc(0.09, 0.01, 1.0, 2);
   struct dem_tessellation *other = renumbered(t), *const bodies[2] = {larger, other};
   struct dem_inputs in = fixture_inputs();
   in.threshold.breaking = true;
   in.threshold.modulus = 4.0;
-  struct dem_system *s = NULL;
+  DEM_SYSTEM *s = NULL;
   assert_int_equal(dem_system_create(t, &in, 11, &s, NULL), STATUS_OK);
   for (int b = 0; b < 2; b++) {
-    struct dem_system *there = NULL;
+    DEM_SYSTEM *there = NULL;
     assert_int_equal(dem_system_create(bodies[b], &in, 11, &there, NULL), STATUS_OK);
     for (size_t k = 0; k < t->pair_count; k++) {
       const uint32_t *pair = t->pair[k];
@@ -306,12 +298,8 @@ TEST(thresholds_belong_to_places) {
       for (int q = 0; q < 2; q++) /* roundings of positions; another draw differs by tenths */
         fixture_near(factor[q], here[q], 1e-9, b ? "threshold, other numbers" : "threshold, larger body");
     }
-    dem_system_free(there);
   }
-  dem_system_free(s);
   dem_tessellation_free(other);
-  dem_tessellation_free(larger);
-  dem_tessellation_free(t);
 }
 
 /* Squares face to face, a tenth slower than the speed reported to users and a tenth faster: the slow ones bounce, the
@@ -321,19 +309,17 @@ TEST(grains_pass_where_said) {
     for (int fast = 0; fast < 2; fast++) {
       struct dem_inputs inputs = DEM_CASE("disc-explosion", law == DEM_CONTACT_PRINTED ? "contact.law=printed" : NULL);
       const double speed = (fast ? 1.1 : 0.9) * dem_describe_passing_speed(&inputs);
-      struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 1e-4, false);
+      DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 1e-4, false);
       struct dem_inputs in = fixture_inputs();
       in.contact.law = law;
       in.fidelity.time_step = 1e-8;
-      struct dem_system *s = fixture_create(t, &in);
+      DEM_SYSTEM *s = fixture_create(t, &in);
       dem_system_set_velocity(s, 0, 0.5 * speed, 0.0, 0.0);
       dem_system_set_velocity(s, 1, -0.5 * speed, 0.0, 0.0);
       const double pass = 0.04 / speed; /* time to pass unhindered, four times over */
       while (dem_system_time(s) < 2.0 * pass)
         assert_true(dem_system_step(s));
       assert_true(fast ? s->c.x[0] > s->c.x[1] : s->c.x[0] < s->c.x[1]);
-      dem_system_free(s);
-      dem_tessellation_free(t);
     }
 }
 

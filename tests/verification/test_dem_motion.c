@@ -58,7 +58,7 @@ static struct momenta momenta(const struct dem_system *s) {
 
 /* Momentum to 1e-12 and angular momentum to 1e-10 of the grains' own, through breaking, friction and either law. */
 TEST(momenta_are_conserved) {
-  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int kind = 0; kind < 4; kind++) {
     struct dem_inputs in = fixture_inputs();
     in.contact.law = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
@@ -67,7 +67,7 @@ TEST(momenta_are_conserved) {
       in.contact.normal_damping = in.contact.tangential_damping = 1e4, in.contact.friction = 0.5,
       in.contact.damping_bonded = true;
     in.fidelity.integrator = kind == 3 ? DEM_GEAR : DEM_VERLET;
-    struct dem_system *s = charged(t, &in, 3.0, 40.0);
+    DEM_SYSTEM *s = charged(t, &in, 3.0, 40.0);
     const struct momenta before = momenta(s);
     for (int k = 0; k < 2000; k++)
       assert_true(dem_system_step(s));
@@ -79,14 +79,12 @@ TEST(momenta_are_conserved) {
                  "angular momentum");
     const struct dem_break *log;
     assert_true(kind == 0 || dem_system_breaks(s, &log) > 20);
-    dem_system_free(s);
   }
-  dem_tessellation_free(t);
 }
 
 /* Unbroken, undamped, conservative: total energy within 0.5 % over 10 ms at 1 us, and its error falls as dt^2. */
 TEST(energy_is_conserved) {
-  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   double worst[3] = {0};
   for (int fine = 0; fine < 3; fine++) {
     struct dem_inputs in = fixture_inputs();
@@ -110,7 +108,6 @@ TEST(energy_is_conserved) {
   assert_true(worst[1] < 0.005);
   /* order 2 is a factor 4; kinks of contact and the maximum over a chaotic run leave some room */
   assert_true(worst[0] / worst[1] > 3.0 && worst[1] / worst[2] > 3.0);
-  dem_tessellation_free(t);
 }
 
 /* Order by the difference to a run with far smaller steps; beams only, which is a smooth problem. */
@@ -120,10 +117,10 @@ static double order(int integrator, double finest, const struct dem_tessellation
   in.contact.law = DEM_CONTACT_OFF;
   in.fidelity.integrator = integrator;
   const double span = 64e-6;
-  double *exact = calloc(3 * t->cell_count, sizeof *exact);
+  OWNED double *exact = calloc(3 * t->cell_count, sizeof *exact);
   for (int run = 0; run < 3; run++) {
     in.fidelity.time_step = run == 0 ? finest / 8.0 : run == 1 ? finest : 2.0 * finest;
-    struct dem_system *s = charged(t, &in, 0.0, 0.0);
+    DEM_SYSTEM *s = charged(t, &in, 0.0, 0.0);
     for (int k = 0, steps = (int)lround(span / in.fidelity.time_step); k < steps; k++)
       assert_true(dem_system_step(s));
     double sum = 0.0;
@@ -137,32 +134,29 @@ static double order(int integrator, double finest, const struct dem_tessellation
     }
     if (run)
       error[run - 1] = sqrt(sum);
-    dem_system_free(s);
   }
-  free(exact);
   print_message("          %s: %.2e m at %.1f us, order %.2f\n", integrator == DEM_GEAR ? "Gear" : "Verlet", error[0],
                 finest * 1e6, log2(error[1] / error[0]));
   return log2(error[1] / error[0]);
 }
 
 TEST(integrators_have_their_order) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01069, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01069, 1.0, 5);
   const double verlet = order(DEM_VERLET, 0.5e-6, t), gear = order(DEM_GEAR, 0.5e-6, t);
   assert_true(verlet > 1.9 && verlet < 2.1);
   assert_true(gear > 5.5); /* sixth order; with the coefficient for forces of velocities it is 5.0 */
-  dem_tessellation_free(t);
 }
 
 /* Distance of a damped pair to its exact place: two squares, pressed together, start at rest, and a linear spring and a
  * linear dashpot drive them apart. They overlap during the whole test. */
 static double damped_error(double time_step) {
-  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.fidelity.integrator = DEM_GEAR;
   in.fidelity.time_step = time_step;
   in.contact.normal_damping = 2e4;
   in.contact.damping_bonded = true;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   const double pressed = 1e-4, span = 16e-6;
   fixture_place(s, 1, t->centroid[1].x - pressed, t->centroid[1].y, 0.0);
   fixture_evaluate(s);
@@ -174,8 +168,6 @@ static double damped_error(double time_step) {
   const double exact = -pressed * exp(-decay * span) * (cos(w * span) + decay / w * sin(w * span));
   assert_true(exact < 0.0); /* they still overlap */
   const double error = fabs(s->c.x[1] - s->c.x[0] - (t->centroid[1].x - t->centroid[0].x) - exact);
-  dem_system_free(s);
-  dem_tessellation_free(t);
   return error;
 }
 
@@ -187,12 +179,12 @@ TEST(gear_has_its_order_with_damping) {
 
 /* Growth of the energy of a free pair's fastest mode in one of its periods, at `share` of the longest stable step. */
 static double growth_per_period(int integrator, bool velocities, double share) {
-  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.bonded = false; /* beams alone: a linear system */
   in.contact.normal_damping = velocities ? 1e-9 : 0.0;
   in.fidelity.integrator = integrator;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   const double limit = dem_system_stable_time_step(s);
   in.fidelity.integrator = DEM_VERLET;
   const double fastest = 2.0 / dem_system_stable_time_step(s);
@@ -207,8 +199,6 @@ static double growth_per_period(int integrator, bool velocities, double share) {
       assert_true(dem_system_step(s));
     energy[half] = fixture_total(dem_system_ledger(s));
   }
-  dem_system_free(s);
-  dem_tessellation_free(t);
   return log(energy[1] / energy[0]) / 500.0;
 }
 
@@ -232,7 +222,7 @@ TEST(stable_steps_are_stable) {
  * mean of the inverse diameters. The side leans, so that the spring also turns the grains. */
 TEST(stable_step_of_two_bonded_grains) {
   const double width[2] = {0.01, 0.016}, h = 0.01, lean = 0.004, side = hypot(h, lean);
-  struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.fidelity.integrator = DEM_VERLET;
   in.grain.young_modulus = 20 * in.beam.young_modulus; /* so that the spring decides */
@@ -271,29 +261,27 @@ TEST(stable_step_of_two_bonded_grains) {
       for (size_t b = 0; b < 6; b++)
         gsl_matrix_set(k, a, b, (beam[a][b] + (c < 2 ? spring * gap[a] * gap[b] : 0.0)) / sqrt(mass[a] * mass[b]));
     gsl_eigen_symm(k, values, work);
-    struct dem_system *s = fixture_create(t, &in);
+    DEM_SYSTEM *s = fixture_create(t, &in);
     const double expected = 2.0 / sqrt(gsl_vector_max(values));
     /* the power iteration ends at a change of 1e-7; grains are smaller than their cells by 1e-11 */
     fixture_near(dem_system_stable_time_step(s), expected, 1e-5 * expected, "longest step");
-    dem_system_free(s);
     gsl_matrix_free(k);
   }
   gsl_vector_free(values);
   gsl_eigen_symm_free(work);
-  dem_tessellation_free(t);
 }
 
 /* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value (Gear
  * 1971; Allen & Tildesley 1987, table E.1). The order alone does not determine all of them. */
 TEST(gear_has_its_coefficients) {
-  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 0.0, true);
   const double published[2][6] = {{3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
                                   {3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
   for (int damped = 0; damped < 2; damped++) {
     struct dem_inputs in = fixture_inputs();
     in.fidelity.integrator = DEM_GEAR;
     in.contact.normal_damping = damped ? 1.0 : 0.0; /* forces may depend on velocities: the other first coefficient */
-    struct dem_system *s = fixture_create(t, &in);
+    DEM_SYSTEM *s = fixture_create(t, &in);
     const double start[6] = {0.0152, 0.7e-5, 0.5e-5, -0.3e-5, 0.2e-5, 0.1e-5}; /* x and dt^k/k! d^k x of grain 1 */
     const double dt = in.fidelity.time_step;
     s->c.x[1] = start[0];
@@ -314,14 +302,12 @@ TEST(gear_has_its_coefficients) {
     assert_true(fabs(error) > 1e-6);
     for (int k = 0; k < 6; k++) /* roundings of values of 1e-5, and of the position itself */
       fixture_near(got[k], predicted[k] + published[damped][k] * error, k ? 1e-19 : 1e-17, "Gear");
-    dem_system_free(s);
   }
-  dem_tessellation_free(t);
 }
 
 /* Breaking, damping and friction on: kinetic + stored + broken + dissipated stays what it was. */
 TEST(ledger_closes) {
-  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int kind = 0; kind < 4; kind++) {
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
@@ -331,7 +317,7 @@ TEST(ledger_closes) {
     if (kind == 2)
       in.contact.normal_damping = in.contact.tangential_damping = 1e4, in.contact.friction = 0.5,
       in.contact.damping_bonded = true;
-    struct dem_system *s = charged(t, &in, 0.0, 0.0);
+    DEM_SYSTEM *s = charged(t, &in, 0.0, 0.0);
     const double before = fixture_total(dem_system_ledger(s));
     for (int k = 0; k < 8000; k++)
       assert_true(dem_system_step(s));
@@ -342,9 +328,7 @@ TEST(ledger_closes) {
     assert_true(l.broken_beam > 0.01 * before);
     assert_true(kind != 2 || (l.damping > 0.01 * before && l.friction > 0.0));
     fixture_near(fixture_total(l), before, 0.005 * before, "ledger"); /* the same bound as without breaking */
-    dem_system_free(s);
   }
-  dem_tessellation_free(t);
 }
 
 /* A body at rest has no forces, to the last bit, and does not begin to move. */
@@ -357,14 +341,14 @@ TEST(rest_is_rest) {
                                         .rows = 20,
                                         .origin = {3.0, -7.0},
                                         .seed = 2};
-    struct dem_tessellation *t = NULL;
+    DEM_TESSELLATION *t = NULL;
     assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
     for (int law = 0; law < 3; law++) {
       struct dem_inputs in = fixture_inputs();
       in.contact.law = law;
       in.threshold.breaking = true;
       in.fidelity.integrator = law == 1 ? DEM_GEAR : DEM_VERLET;
-      struct dem_system *s = fixture_create(t, &in);
+      DEM_SYSTEM *s = fixture_create(t, &in);
       for (int k = 0; k < 10; k++)
         assert_true(dem_system_step(s));
       for (uint32_t i = 0; i < t->cell_count; i++) {
@@ -373,15 +357,13 @@ TEST(rest_is_rest) {
         assert_true(fx == 0.0 && fy == 0.0 && torque == 0.0 && s->c.vx[i] == 0.0 && s->c.x[i] == t->centroid[i].x);
       }
       assert_true(fixture_total(dem_system_ledger(s)) == 0.0);
-      dem_system_free(s);
     }
-    dem_tessellation_free(t);
   }
 }
 
 /* Every beam is stretched and breaks in the first step: from then on the same bits as grains that had no beams. */
 TEST(broken_is_unbonded) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01, 1.0, 5);
   for (int on_bonded = 0; on_bonded < 2; on_bonded++) {
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
@@ -389,7 +371,7 @@ TEST(broken_is_unbonded) {
     in.contact.bonded = on_bonded;
     in.contact.normal_damping = 1e3;
     in.contact.damping_bonded = on_bonded;
-    struct dem_system *broken = fixture_create(t, &in), *unbonded = fixture_create(t, &in);
+    DEM_SYSTEM *broken = fixture_create(t, &in), *unbonded = fixture_create(t, &in);
     uint64_t seed = 9;
     for (uint32_t i = 0; i < t->cell_count; i++) {
       const double spin = 2000.0 * fixture_random(&seed);
@@ -407,26 +389,23 @@ TEST(broken_is_unbonded) {
     }
     assert_true(dem_system_ledger(broken).damping > 0.0); /* contacts did occur */
     assert_int_equal(dem_system_breaks(unbonded, &log), 0);
-    dem_system_free(broken);
-    dem_system_free(unbonded);
   }
-  dem_tessellation_free(t);
 }
 
 /* Save in the middle, load into a fresh system: the same bits from then on, lists and all. */
 TEST(restored_run_has_the_same_bits) {
-  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int integrator = 0; integrator < 2; integrator++) {
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
     in.fidelity.integrator = integrator;
     in.contact.normal_damping = 1e3;
     in.threshold.modulus = 5.0;
-    struct dem_system *s = charged(t, &in, 0.0, 0.0), *copy = fixture_create(t, &in);
+    DEM_SYSTEM *s = charged(t, &in, 0.0, 0.0), *copy = fixture_create(t, &in);
     for (int k = 0; k < 777; k++)
       assert_true(dem_system_step(s));
     const size_t size = dem_system_state_size(s);
-    unsigned char *bytes = malloc(size), *again = malloc(size);
+    OWNED unsigned char *bytes = malloc(size), *again = malloc(size);
     dem_system_state_save(s, bytes);
     assert_false(dem_system_state_load(copy, bytes, size - 1));
     assert_true(dem_system_state_load(copy, bytes, size));
@@ -444,22 +423,17 @@ TEST(restored_run_has_the_same_bits) {
     dem_system_state_save(s, bytes);
     dem_system_state_save(copy, again);
     assert_memory_equal(bytes, again, size_now);
-    free(bytes);
-    free(again);
-    dem_system_free(s);
-    dem_system_free(copy);
   }
-  dem_tessellation_free(t);
 }
 
 /* Gear's start on a beam in longitudinal oscillation: x = A cos wt + B sin wt, whose derivatives are known. */
 TEST(gear_starts_with_the_derivatives) {
-  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
   in.fidelity.time_step = 1e-7;
   in.fidelity.integrator = DEM_GEAR;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   const double stretch = 1e-5, speed = 0.2;
   fixture_place(s, 1, t->centroid[1].x + stretch, t->centroid[1].y, 0.0);
   dem_system_set_velocity(s, 0, -0.5 * speed, 0.0, 0.0);
@@ -476,13 +450,11 @@ TEST(gear_starts_with_the_derivatives) {
   for (int k = 2; k < 6; k++) /* the next derivatives' terms stand before them with factors of a few */
     fixture_near(s->c.gear[0][k][1], exact[k], fabs(exact[k]) * (10.0 * order[k] * (1.0 + u / v + v / u) + 1e-6),
                  "derivative");
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* Long grains that do nothing but turn: their lists must be rebuilt, or the end of one passes through the other. */
 TEST(turning_grains_meet) {
-  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, false);
+  DEM_TESSELLATION *t = fixture_squares(2, 1, 0.01, 0.0, false);
   const double half_length = 0.01, half_width = 0.0025, apart = 0.011; /* ends reach 0.0125 across, skins 0.0056 */
   for (int i = 0; i < 2; i++) {
     t->centroid[i] = (struct dem_point){apart * i, 0.0};
@@ -493,7 +465,7 @@ TEST(turning_grains_meet) {
                                                 v >= 2 ? half_length : -half_length};
   }
   struct dem_inputs in = fixture_inputs();
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   dem_system_set_velocity(s, 1, 0.0, 0.0, 800.0); /* a quarter turn in 2000 steps */
   bool met = false;
   for (int k = 0; k < 2200 && !met; k++) {
@@ -505,15 +477,13 @@ TEST(turning_grains_meet) {
   const double reach = half_length * sin(s->c.angle[1]) + half_width * cos(s->c.angle[1]);
   fixture_near(reach, apart - half_width, 800.0 * in.fidelity.time_step * half_length,
                "first touch"); /* one step's way */
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* A grain a thousand kilometres away costs no memory, and does not slow the search down. */
 TEST(far_flung_grain) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01, 1.0, 5);
   struct dem_inputs in = fixture_inputs();
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   const size_t bytes = dem_system_arrays_bytes(s);
   for (size_t k = 0; k < t->pair_count; k++)
     if (t->pair[k][0] == 0 || t->pair[k][1] == 0)
@@ -529,8 +499,6 @@ TEST(far_flung_grain) {
   for (int k = 0; k < 100; k++)
     assert_true(dem_system_step(s));
   assert_true(dem_system_arrays_bytes(s) < 4 * bytes);
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 TEST(step_loop_allocates_nothing) {
@@ -554,7 +522,7 @@ TEST(step_loop_allocates_nothing) {
 /* Steps far beyond the stability limit, absurd thresholds and velocities: the step returns false or a finite state,
  * never a crash. */
 TEST(extremes) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01, 1.0, 5);
   const double steps[] = {1e-30, 1e-4, 1.0, 1e20}, thresholds[] = {0.0, 1e-300, 1e20};
   for (size_t a = 0; a < 4; a++)
     for (size_t b = 0; b < 3; b++)
@@ -566,12 +534,11 @@ TEST(extremes) {
         in.fidelity.integrator = integrator;
         in.contact.normal_damping = in.contact.tangential_damping = b == 1 ? 1e20 : 0.0;
         in.contact.friction = 1.0;
-        struct dem_system *s = charged(t, &in, 0.0, 1e3);
+        DEM_SYSTEM *s = charged(t, &in, 0.0, 1e3);
         for (int k = 0; k < 300 && dem_system_step(s); k++) {
         }
         dem_system_ledger(s);
         dem_system_overlap_share(s);
-        dem_system_free(s);
       }
   struct dem_inputs in = fixture_inputs();
   in.fidelity.time_step = 20e-6; /* unstable without breaking: grows until it is no number */
@@ -586,5 +553,4 @@ TEST(extremes) {
   struct error error = {0};
   assert_int_equal(dem_system_create(t, &in, 0, &s, &error), STATUS_CONTENT);
   assert_null(s);
-  dem_tessellation_free(t);
 }

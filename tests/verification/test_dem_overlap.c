@@ -236,7 +236,7 @@ TEST(chord_is_the_gradient) {
 
 /* A disc's bonded contacts by windows against the same disc with every contact in the general overlap. */
 static void windows_agree(double disorder) {
-  struct dem_tessellation *t = fixture_disc(0.06, 0.01, disorder, 3);
+  DEM_TESSELLATION *t = fixture_disc(0.06, 0.01, disorder, 3);
   struct dem_inputs in = fixture_inputs();
   in.beam.young_modulus = 0.0;
   const double sizes[] = {1e-6, 1e-4, 1e-2, 0.1, 0.3, 0.6};
@@ -246,7 +246,7 @@ static void windows_agree(double disorder) {
       in.contact.normal_damping = friction ? 1e3 : 0.0;
       in.contact.tangential_damping = friction ? 1e3 : 0.0;
       in.contact.friction = friction ? 0.5 : 0.0;
-      struct dem_system *window = fixture_create(t, &in), *general = fixture_create(t, &in);
+      DEM_SYSTEM *window = fixture_create(t, &in), *general = fixture_create(t, &in);
       for (size_t pair = 0; pair < general->pair_count; pair++) {
         general->windowed[pair] = 0;
         const int32_t lane = general->pair_lane[pair];
@@ -288,10 +288,7 @@ static void windows_agree(double disorder) {
       assert_true(largest > 0.0);
       /* the same overlap by two roundings: 1e-16 of a coordinate over the smallest overlaps, 1e-6 of a cell deep */
       assert_true(worst <= 1e-8 * largest);
-      dem_system_free(window);
-      dem_system_free(general);
     }
-  dem_tessellation_free(t);
 }
 
 TEST(windows_are_exact) {
@@ -303,10 +300,10 @@ TEST(windows_are_exact) {
 TEST(windows_of_a_square_lattice) {
   windows_agree(0.0);
   const double h = 0.01, strain = 1e-3;
-  struct dem_tessellation *t = fixture_squares(6, 6, h, 0.0, true);
+  DEM_TESSELLATION *t = fixture_squares(6, 6, h, 0.0, true);
   struct dem_inputs in = fixture_inputs();
   in.beam.young_modulus = 0.0;
-  struct dem_system *s = fixture_create(t, &in);
+  DEM_SYSTEM *s = fixture_create(t, &in);
   for (uint32_t i = 0; i < 36; i++)
     fixture_place(s, i, 77.7 + t->centroid[i].x * (1.0 - strain), 33.3 + t->centroid[i].y, 0.0);
   fixture_evaluate(s);
@@ -314,8 +311,6 @@ TEST(windows_of_a_square_lattice) {
   for (uint32_t i = 0; i < 36;
        ++i) /* overlaps are 1e-3 of a cell, the gap at rest 1e-11; positions of 77 m have roundings of 1e-14 m */
     fixture_near(s->c.fx[i], i % 6 == 0 ? -face : i % 6 == 5 ? face : 0.0, 3e-8 * face, "push of a face");
-  dem_system_free(s);
-  dem_tessellation_free(t);
 }
 
 /* Pairs of every shape: a random polygon cut in two along a diagonal, then pushed and turned anyhow. */
@@ -328,8 +323,8 @@ TEST(windows_of_odd_shapes) {
     do
       random_ring(&seed, &ring, 0.3 + 0.3 * (1.0 + fixture_random(&seed)), 0.0, 0.0, 3.0 * fixture_random(&seed));
     while (ring.count < 6);
-    const size_t cut_at = 2 + (size_t)(trial % (int)(ring.count - 3));  /* the diagonal from corner 0 */
-    struct dem_tessellation *t = fixture_squares(4, 1, 1.0, 0.0, true); /* room for 16 corners; two cells are used */
+    const size_t cut_at = 2 + (size_t)(trial % (int)(ring.count - 3)); /* the diagonal from corner 0 */
+    DEM_TESSELLATION *t = fixture_squares(4, 1, 1.0, 0.0, true);       /* room for 16 corners; two cells are used */
     t->cell_count = 2;
     t->pair_count = 1;
     t->first_vertex[1] = (uint32_t)cut_at + 1;
@@ -353,7 +348,7 @@ TEST(windows_of_odd_shapes) {
     t->side[0] = hypot(ring.x[cut_at] - ring.x[0], ring.y[cut_at] - ring.y[0]);
     struct dem_inputs in = base;
     in.beam.young_modulus = 0.0;
-    struct dem_system *window = fixture_create(t, &in), *general = fixture_create(t, &in);
+    DEM_SYSTEM *window = fixture_create(t, &in), *general = fixture_create(t, &in);
     general->windowed[0] = 0;
     general->bond[0].stiffness[0] = 0.0;
     const double size = pow(10.0, -1.0 + fixture_random(&seed));
@@ -373,9 +368,6 @@ TEST(windows_of_odd_shapes) {
                  "force y");
     fixture_near(window->c.torque[1], general->c.torque[1], 1e-9 * force + 1e-11 * general->pair_contact[0].stiffness,
                  "torque");
-    dem_system_free(window);
-    dem_system_free(general);
-    dem_tessellation_free(t);
   }
   print_message("          %d contacts by windows, %d by the general overlap\n", windows, generals);
   assert_true(windows > 1000 && generals > 1000);

@@ -115,7 +115,7 @@ static bool holds(const struct limit_range *range, double value) {
 static struct row try_law(size_t l, size_t noise, size_t n) {
   struct drawing drawing = {.row = l * NOISES + noise};
   struct row row = {.n = n, .wider = NAN};
-  double *wider = malloc(n * sizeof *wider);
+  OWNED double *wider = malloc(n * sizeof *wider);
   assert_non_null(wider);
   for (size_t i = 0; i < n; i++) {
     struct sample sample;
@@ -139,7 +139,6 @@ static struct row try_law(size_t l, size_t noise, size_t n) {
   qsort(wider, row.seen, sizeof *wider, sample_ascending);
   if (row.seen > 0 && laws[l].form == POWER)
     row.wider = wider[row.seen / 2];
-  free(wider);
   return row;
 }
 

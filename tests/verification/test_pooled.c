@@ -200,7 +200,7 @@ TEST(spectrum_forms) {
 TEST(exponent_in_forms) {
   enum { N = 400000 };
   const size_t first[2] = {0, N};
-  double *masses = malloc(N * sizeof *masses);
+  OWNED double *masses = malloc(N * sizeof *masses);
   const double beta = 1.8;
   assert_non_null(masses);
   for (size_t i = 0; i < N; i++)
@@ -208,14 +208,12 @@ TEST(exponent_in_forms) {
   const struct pooled_runs runs = {1, first, masses};
   for (int f = 0; f < 6; f++) {
     const struct pooled_form form = {.cumulative = f % 2, .size = {f / 2 ? 2000 : 0, f / 2 + 1}};
-    struct pooled_bin *bins;
+    OWNED struct pooled_bin *bins = NULL;
     size_t count;
     assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
     const double slope = -log(bins[20].value / bins[10].value) / log(bins[20].lower / bins[10].lower);
     assert_true(fabs(slope - pooled_spectrum_exponent(&form, beta)) < 0.01);
-    free(bins);
   }
-  free(masses);
 }
 
 /* Under the law p is uniform in 0..1; a lognormal law is refused. Windows end at each run's largest fragment. Both are

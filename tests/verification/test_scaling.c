@@ -222,7 +222,7 @@ static void check(const struct law *given, bool judge) {
   if (seeds)
     law->samples = (size_t)atoi(seeds);
   static const char *const names[] = {"p_c", "nu", "beta/nu", "gamma/nu", "D", "tau"};
-  struct scaling_run *runs = malloc(law->samples * GRID * law->sizes * sizeof *runs);
+  OWNED struct scaling_run *runs = malloc(law->samples * GRID * law->sizes * sizeof *runs);
   int held[SCALING_VALUES] = {0};
   double widths[SCALING_VALUES][REPEATS], off[SCALING_VALUES] = {0}, square[SCALING_VALUES] = {0};
   double quality[4] = {0};
@@ -258,7 +258,6 @@ static void check(const struct law *given, bool judge) {
     assert_true(held[v] >= LEAST_HELD);
     assert_true(seeds || widths[v][REPEATS - 1] <= law->widest[v]);
   }
-  free(runs);
 }
 
 TEST(percolation_on_the_square_lattice) {

@@ -30,7 +30,7 @@ static struct ring ring(double particles, bool correction) {
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const double k = M_PI / length, nu = solid_poisson(&c.physics[0].material), speed = 0.5;
-  double *shape = malloc(p->n * sizeof *shape);
+  OWNED double *shape = malloc(p->n * sizeof *shape);
   for (size_t i = 0; i < p->n; i++) {
     shape[i] = sin(k * p->z[i]);
     p->vz[i] = speed * shape[i];
@@ -50,7 +50,6 @@ static struct ring ring(double particles, bool correction) {
   }
   struct ring r = {1 / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0],
                    solid_energy_error(&c, start) / start.kinetic, p->n};
-  free(shape);
   solid_end(&c);
   return r;
 }

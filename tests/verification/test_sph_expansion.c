@@ -78,7 +78,7 @@ static size_t by_particles(double wanted, double u0, double inner, bool correcte
   struct sph_body body = {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},
                           .density = case_basalt.density,
                           .h_over_spacing = NAN};
-  struct sph_particles *particles = NULL;
+  SPH_PARTICLES *particles = NULL;
   struct sph_range range;
   struct error why = {0};
   body.lattice.particles = wanted;
@@ -93,7 +93,7 @@ static size_t by_particles(double wanted, double u0, double inner, bool correcte
   debris.material.tension_limit.pressure = 0;
   struct case_parameters parameters = case_parameters_default();
   parameters.in.gradient_correction.on = corrected;
-  struct sph_system *s = case_system(particles, 1, &debris, &parameters);
+  SPH_SYSTEM *s = case_system(particles, 1, &debris, &parameters);
   const double total = sph_system_ledger(s).internal;
   for (int k = 0; k < TIMES; k++) {
     case_run(s, times[k]);
@@ -102,8 +102,6 @@ static size_t by_particles(double wanted, double u0, double inner, bool correcte
     *error = (l.kinetic + l.internal - total) / total;
   }
   const size_t n = particles->n;
-  sph_system_free(s);
-  sph_particles_free(particles);
   return n;
 }
 

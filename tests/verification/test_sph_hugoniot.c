@@ -56,7 +56,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
   solid_build(&c, piston ? SPH_WITH_HELD : 0);
   struct sph_particles *p = c.particles;
   const double h = c.range[0].h, slab = piston ? 4 * h : 0, wall = piston ? 0 : half;
-  double *rest = malloc(p->n * sizeof *rest); /* distance from the wall */
+  OWNED double *rest = malloc(p->n * sizeof *rest); /* distance from the wall */
   for (size_t i = 0; i < p->n; i++) {
     rest[i] = fabs(p->x[i] - wall);
     if (!piston)
@@ -66,7 +66,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
       p->vx[i] = up;
     }
   }
-  double *first = malloc(p->n * sizeof *first); /* velocity ahead of the shock */
+  OWNED double *first = malloc(p->n * sizeof *first); /* velocity ahead of the shock */
   memcpy(first, p->vx, p->n * sizeof *first);
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
@@ -123,8 +123,6 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
   s.velocity /= count, s.plateau.density /= count, s.plateau.pressure /= count, s.plateau.energy /= count;
   s.scatter = sqrt(squares / count - s.plateau.pressure * s.plateau.pressure) / s.plateau.pressure;
   s.energy_error = solid_energy_error(&c, start) / (start.kinetic + sph_system_ledger(c.system).work_of_held);
-  free(rest);
-  free(first);
   solid_end(&c);
   return s;
 }
@@ -232,7 +230,7 @@ static void ramp(bool correction) {
   const double K = m->tillotson.A, mu = m->elastic.shear_modulus, yield_strain = m->yield.stress / (2 * mu),
                grip = 3 * c.range[0].h;
   const double rate = yield_strain / (15 * length / 4593); /* 15 passages of sound to yield */
-  double *rest = malloc(p->n * sizeof *rest);
+  OWNED double *rest = malloc(p->n * sizeof *rest);
   memcpy(rest, p->x, p->n * sizeof *rest);
   for (size_t i = 0; i < p->n; i++) {
     p->vx[i] = -rate * (p->x[i] - length / 2);
@@ -275,7 +273,6 @@ static void ramp(bool correction) {
     assert_true(fabs(before / (K + 4 * mu / 3) - 1) < 0.01);
     assert_true(fabs(after / K - 1) < 0.01);
   }
-  free(rest);
   solid_end(&c);
 }
 

@@ -28,7 +28,7 @@ static struct sph_material elastic_basalt(void) {
 
 static double vibrate(double dt, double viscosity, double *out, size_t n) {
   const struct case_block block = {{6, 5, 5}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
   for (size_t i = 0; i < p->n; i++) {
     p->vx[i] = 20 * sin(400 * p->x[i] + 300 * p->y[i]);
     p->vy[i] = 15 * cos(500 * p->z[i]);
@@ -38,14 +38,12 @@ static double vibrate(double dt, double viscosity, double *out, size_t n) {
   parameters.in.viscosity.alpha = viscosity;
   parameters.in.viscosity.beta = 2 * viscosity;
   parameters.domain.largest_time_step = dt;
-  struct sph_system *s = case_system(p, 1, &solid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
   case_run(s, 1.28e-6);
   const struct sph_ledger l = sph_system_ledger(s);
   sph_system_read(s, p);
   for (size_t i = 0; i < n; i++)
     out[i] = i < p->n ? p->vx[i] : p->stress[1][i - p->n] / 1e6;
-  sph_system_free(s);
-  sph_particles_free(p);
   return case_total(l);
 }
 
@@ -77,9 +75,9 @@ TEST(second_order) {
  */
 static double turned(bool correction, double steps, bool whole_body) {
   const struct case_block block = {{7, 7, 7}, {-3.5e-3, -3.5e-3, -3.5e-3}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
   const double first[6] = {3e7, 1e7, -2e7, -1e7, 1.5e7, -2e7}, w = 1e5;
-  double *x = malloc(3 * p->n * sizeof *x);
+  OWNED double *x = malloc(3 * p->n * sizeof *x);
   for (size_t i = 0; i < p->n; i++) {
     x[3 * i] = p->x[i], x[3 * i + 1] = p->y[i], x[3 * i + 2] = p->z[i];
     const double r[3] = {p->x[i], p->y[i], p->z[i]}, n = 1 / sqrt(3.0);
@@ -91,7 +89,7 @@ static double turned(bool correction, double steps, bool whole_body) {
   struct case_parameters parameters = case_parameters_default();
   parameters.in.gradient_correction.on = correction;
   parameters.domain.largest_time_step = M_PI / 2 / w / steps;
-  struct sph_system *s = case_system(p, 1, &solid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
   /* about the axis (1, 1, 1)/sqrt(3): Rodrigues */
   const double n = 1 / sqrt(3.0);
   double angle = 0, rotation[3][3] = {{0}};
@@ -144,9 +142,6 @@ static double turned(bool correction, double steps, bool whole_body) {
       miss += (k == 0 || k == 3 || k == 5 ? 1 : 2) * pow(p->stress[k][i] - got[k], 2);
     worst = fmax(worst, sqrt(miss / size));
   }
-  free(x);
-  sph_system_free(s);
-  sph_particles_free(p);
   return worst;
 }
 
@@ -182,7 +177,7 @@ static bool central(const struct sph_particles *p, size_t i) {
 /* -sigma_xx against the strain: slope K + 4 mu/3, then K beyond the Hugoniot elastic limit. Small strains, so that the
  * pressure is linear to 1e-4; Y is low, so that yielding begins early. */
 TEST(yield_ramp) {
-  struct sph_particles *p = strained(6, -100, 0, 0, 0);
+  SPH_PARTICLES *p = strained(6, -100, 0, 0, 0);
   struct sph_material m = case_basalt;
   m.yield.stress = 2e6;
   m.tillotson.B = 0;
@@ -191,7 +186,7 @@ TEST(yield_ramp) {
   parameters.in.gradient_correction.on = true;
   parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
   parameters.domain.largest_time_step = 2e-9;
-  struct sph_system *s = case_system(p, 1, &solid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
   const double K = m.tillotson.A, mu = m.elastic.shear_modulus, Y = m.yield.stress,
                limit = Y / (2 * mu); /* strain at yield */
   const double at[4] = {0.2 * limit, 0.8 * limit, 1.5 * limit, 2.2 * limit};
@@ -227,19 +222,17 @@ TEST(yield_ramp) {
   sph_system_read(s, p);
   /* what a step adds after the return is all there is */
   assert_true(fabs(p->stress[0][0]) < 4.0 / 3 * mu * 100 * s->now.last_step);
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 /* Simple shear: S_xy = mu gamma, and u = S^2/(4 mu rho) (work of the shear stress): the factors 2 of Hooke and of the
  * power. */
 TEST(shear) {
-  struct sph_particles *p = strained(6, 0, 0, 0, 200);
+  SPH_PARTICLES *p = strained(6, 0, 0, 0, 200);
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
   struct case_parameters parameters = case_parameters_default();
   parameters.in.gradient_correction.on = true;
   parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
-  struct sph_system *s = case_system(p, 1, &solid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
   case_run(s, 1e-5);
   sph_system_read(s, p);
   const double gamma = 200 * 1e-5, mu = case_basalt.elastic.shear_modulus;
@@ -252,8 +245,6 @@ TEST(shear) {
       assert_true(fabs(p->energy[i] / (mu * (1 - cos(gamma)) / 2700) - 1) < 0.02);
     assert_true(fabs(p->density[i] / 2700 - 1) < 1e-9);
   }
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 /* ---- damage of a homogeneous stretch: the particle form of Grady and Kipp's law ---- */
@@ -268,9 +259,9 @@ static double strain_of(const struct sph_particles *p, size_t i,
 /* Peak of the mean stress, MPa, of 1000 particles with flaws of their own; D of every particle against grady_kipp.h. At
  * `turn` (s) the motion turns back: flaws close as the load goes, and nothing grows in compression. */
 static double stretch(int growth, int cap, bool compact, double damage_step, double turn, double *worst) {
-  struct sph_particles *p = strained(10, 3600, 0, 0, 0);
+  SPH_PARTICLES *p = strained(10, 3600, 0, 0, 0);
   const double volume = 1000 * pow(spacing, 3);
-  struct sph_flaws *flaws = case_flaws(p->n, volume, 3, 0);
+  SPH_FLAWS *flaws = case_flaws(p->n, volume, 3, 0);
   struct sph_material m = elastic_basalt();
   const struct sph_body_physics solid = {.material = m, .strength = true, .flaws = flaws};
   struct case_parameters parameters = case_parameters_default();
@@ -280,7 +271,7 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
   parameters.in.weibull.flaws = compact;
   parameters.in.fracture.damage_step = damage_step;
   parameters.domain.largest_time_step = 5e-9;
-  struct sph_system *s = case_system(p, 1, &solid, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
   const double K = m.tillotson.A, mu = m.elastic.shear_modulus, young = 9 * K * mu / (3 * K + mu);
   const double speed = 0.4 * sqrt((K + 4 * mu / 3) / 2700), radius = spacing * cbrt(3 / (4 * M_PI));
   double *d = calloc(p->n, sizeof *d), *before = calloc(p->n, sizeof *before), peak = 0;
@@ -314,9 +305,6 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
   }
   free(d);
   free(before);
-  sph_flaws_free(flaws);
-  sph_system_free(s);
-  sph_particles_free(p);
   return peak / 1e6;
 }
 
@@ -355,10 +343,10 @@ TEST(damaged_stress) {
   double work[2][2] = {{0}};
   for (int sign = 0; sign < 2; sign++)
     for (int half = 0; half < 2; half++) {
-      struct sph_particles *p = strained(6, sign ? -100 : 100, 0, 0, 0);
+      SPH_PARTICLES *p = strained(6, sign ? -100 : 100, 0, 0, 0);
       for (size_t i = 0; half && i < p->n; i++)
         p->damage_cbrt[i] = cbrt(0.5);
-      struct sph_flaws *flaws = case_flaws(p->n, 1e-9, 3, 0);
+      SPH_FLAWS *flaws = case_flaws(p->n, 1e-9, 3, 0);
       for (size_t f = 0; f < flaws->count; f++)
         flaws->log_strain[f] = 10; /* never open */
       struct sph_material m = elastic_basalt();
@@ -367,15 +355,12 @@ TEST(damaged_stress) {
       struct case_parameters parameters = case_parameters_default();
       parameters.in.gradient_correction.on = true;
       parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
-      struct sph_system *s = case_system(p, 1, &solid, &parameters);
+      SPH_SYSTEM *s = case_system(p, 1, &solid, &parameters);
       case_run(s, 1e-6);
       sph_system_read(s, p);
       for (size_t i = 0; i < p->n; i++)
         if (central(p, i))
           work[sign][half] = p->energy[i];
-      sph_system_free(s);
-      sph_flaws_free(flaws);
-      sph_particles_free(p);
     }
   const double K = case_basalt.tillotson.A, mu = case_basalt.elastic.shear_modulus;
   const double squeezed = (K + 0.5 * 4 * mu / 3) / (K + 4 * mu / 3);
@@ -413,7 +398,7 @@ TEST(principal_values) {
 
 TEST(pressures) {
   const struct case_block block = {{12, 12, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, 0);
   for (size_t i = 0; i < p->n; i++) { /* all branches */
     p->density[i] = 2700 * (0.2 + 1.6 * random_draw(2, RANDOM_DESIGN, i, 0));
     p->energy[i] = i % 3 ? 3e7 * random_draw(2, RANDOM_DESIGN, i, 1) : 1e5 * random_draw(2, RANDOM_DESIGN, i, 1);
@@ -424,7 +409,7 @@ TEST(pressures) {
       m.tension_limit.pressure = 1e9;
     const struct sph_body_physics fluid = {.material = m};
     const struct case_parameters parameters = case_parameters_default();
-    struct sph_system *s = case_system(p, 1, &fluid, &parameters);
+    SPH_SYSTEM *s = case_system(p, 1, &fluid, &parameters);
     for (size_t i = 0; i < s->n; i++) {
       const struct sph_pressure plain = sph_tillotson(&m.tillotson, 2700, s->c.density[i], s->c.energy[i]);
       const double whole = fmin(fmax((s->c.density[i] / 2700 - 0.9) / 0.1, 0), 1); /* torn at 0.9 of the density */
@@ -433,24 +418,22 @@ TEST(pressures) {
       assert_true(fabs(s->c.pressure[i] - expected) < 1e-13 * (fabs(expected) + 1e11));
       assert_true(fabs(s->c.sound_speed[i] / plain.sound_speed - 1) < 1e-11);
     }
-    sph_system_free(s);
   }
-  sph_particles_free(p);
 }
 
 /* Where tension_limit replaces flaws, torn matter has no shear strength: Y falls from the density at rest to nothing at
  * 0.9 of it. Matter with flaws keeps its Y (D takes its strength), and so does matter without a limit. */
 TEST(torn_matter_bears_no_shear) {
   const struct case_block block = {{12, 12, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
-  struct sph_flaws *flaws = case_flaws(p->n, 1e-30, 1, 0);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
+  SPH_FLAWS *flaws = case_flaws(p->n, 1e-30, 1, 0);
   for (int kind = 0; kind < 3; kind++) {
     struct sph_material m = case_basalt;
     if (kind < 2)
       m.tension_limit.pressure = 1e9;
     const struct sph_body_physics body = {.material = m, .strength = true, .flaws = kind == 1 ? flaws : NULL};
     const struct case_parameters parameters = case_parameters_default();
-    struct sph_system *s = case_system(p, 1, &body, &parameters);
+    SPH_SYSTEM *s = case_system(p, 1, &body, &parameters);
     for (size_t i = 0; i < s->n; i++) {
       s->c.density[i] = 2700 * (0.8 + 0.4 * (double)i / (double)s->n);
       s->c.energy[i] = 0.25 * m.melt_energy;
@@ -465,10 +448,7 @@ TEST(torn_matter_bears_no_shear) {
       const double J2 = xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz;
       assert_true(fabs(sqrt(3 * J2) - whole * 0.75 * m.yield.stress) < 1e-12 * m.yield.stress);
     }
-    sph_system_free(s);
   }
-  sph_flaws_free(flaws);
-  sph_particles_free(p);
 }
 
 /* ---- collisions ---- */
@@ -478,12 +458,12 @@ TEST(elastic_pair) {
     const bool strength = kind > 0, correction = kind > 1;
     const struct case_block blocks[2] = {{{6, 6, 6}, {0, 0, 0}, {0, 0, 60}, spacing},
                                          {{6, 6, 6}, {2.1e-3, 1.2e-3, 6.5e-3}, {0, 0, -60}, spacing}};
-    struct sph_particles *p = case_make(blocks, 2, 2700, 1.21, strength ? SPH_WITH_STRESS : 0);
+    SPH_PARTICLES *p = case_make(blocks, 2, 2700, 1.21, strength ? SPH_WITH_STRESS : 0);
     const struct sph_body_physics body = {.material = elastic_basalt(), .strength = strength};
     const struct sph_body_physics physics[2] = {body, body};
     struct case_parameters parameters = case_parameters_default();
     parameters.in.gradient_correction.on = correction;
-    struct sph_system *s = case_system(p, 2, physics, &parameters);
+    SPH_SYSTEM *s = case_system(p, 2, physics, &parameters);
     const struct sph_ledger first = sph_system_ledger(s);
     case_run(s, 12e-6);
     const struct sph_ledger last = sph_system_ledger(s);
@@ -506,7 +486,5 @@ TEST(elastic_pair) {
     /* pressures and viscosity act along the line of a pair; shear stress does not, and a body of six particles turns by
      * it */
     assert_true(turn < (strength ? 0.25 : 1e-11) * lever);
-    sph_system_free(s);
-    sph_particles_free(p);
   }
 }

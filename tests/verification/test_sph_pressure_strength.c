@@ -76,8 +76,8 @@ static double root_of_J2(const struct sph_particles *p, size_t i) {
 
 /* Loads a cell until it yields everywhere. Returns the largest miss of sqrt(J2), Pa. */
 static double load(const struct sph_material *m, double pressure, double damage, double energy, double *bears) {
-  struct sph_particles *p;
-  struct sph_system *s = cell(m, pressure, damage, energy, 1e-30, &p);
+  SPH_PARTICLES *p = NULL;
+  SPH_SYSTEM *s = cell(m, pressure, damage, energy, 1e-30, &p);
   double miss = 0;
   case_run(s, 6e-7); /* 6 %: 1.5 GPa are reached at 1.5 GPa/(sqrt(3) mu) = 3.8 % */
   sph_system_read(s, p);
@@ -87,8 +87,6 @@ static double load(const struct sph_material *m, double pressure, double damage,
     assert_true(fabs(pow(p->damage_cbrt[i], 3) - damage) < 1e-15);
   }
   *bears = root_of_J2(p, p->n / 2);
-  sph_system_free(s);
-  sph_particles_free(p);
   return miss;
 }
 
@@ -155,14 +153,12 @@ TEST(von_mises) {
   plain.melt_energy = NAN;
   plain.yield.stress = sqrt(3.0) * 2e8;
   for (int k = 0; k < 2; k++) {
-    struct sph_particles *p;
-    struct sph_system *s = cell(k ? &plain : &m, 5e8, 0, 0, 1e-30, &p);
+    SPH_PARTICLES *p = NULL;
+    SPH_SYSTEM *s = cell(k ? &plain : &m, 5e8, 0, 0, 1e-30, &p);
     case_run(s, 6e-7);
     sph_system_read(s, p);
     for (int c = 0; c < 6; c++)
       stress[k][c] = p->stress[c][100];
-    sph_system_free(s);
-    sph_particles_free(p);
   }
   for (int c = 0; c < 6; c++)
     assert_true(fabs(stress[0][c] - stress[1][c]) < 1e-12 * 2e8); /* 300 returns of the rounding 1e-16 */
@@ -175,8 +171,8 @@ TEST(what_acts) {
       struct sph_material m = rock();
       m.pressure_strength.law = law;
       m.yield.stress = 1e9;
-      struct sph_particles *p;
-      struct sph_system *s = cell(&m, tension ? -1e8 : 1e8, 0.75, 0, 1e-30, &p);
+      SPH_PARTICLES *p = NULL;
+      SPH_SYSTEM *s = cell(&m, tension ? -1e8 : 1e8, 0.75, 0, 1e-30, &p);
       case_steps(s, 1);
       for (size_t i = 0; i < s->n; i++) {
         /* one more rounding each for 1-D, 1/rho^2 and their product; the factor is that of the predicted density */
@@ -184,8 +180,6 @@ TEST(what_acts) {
         assert_true(fabs(s->c.stress_factor[i] * square / left - 1) < 1e-6);
         assert_true(fabs(-s->c.pressure_term[i] * square / (of_pressure * s->c.pressure[i]) - 1) < 1e-6);
       }
-      sph_system_free(s);
-      sph_particles_free(p);
     }
 }
 
@@ -196,13 +190,11 @@ TEST(waves_of_broken_rock) {
     for (int broken = 0; broken < 2; broken++) {
       struct sph_material m = rock();
       m.pressure_strength.law = law;
-      struct sph_particles *p;
-      struct sph_system *s = cell(&m, 1e8, broken, 0, 1e-30, &p);
+      SPH_PARTICLES *p = NULL;
+      SPH_SYSTEM *s = cell(&m, 1e8, broken, 0, 1e-30, &p);
       s->domain.largest_time_step = NAN;
       case_steps(s, 3);
       step[law][broken] = s->now.last_step;
-      sph_system_free(s);
-      sph_particles_free(p);
     }
   /* h over c_L; c_L^2 = c^2 + 4/3 mu/rho, c^2 = (K/rho) to some per cent of pressure */
   const double faster = sqrt(1 + 4.0 / 3 * case_basalt.elastic.shear_modulus / case_basalt.tillotson.A);
@@ -218,8 +210,8 @@ TEST(strain_of_flaws) {
       struct sph_material m = rock();
       m.pressure_strength.law = law;
       m.yield.stress = 1e9;
-      struct sph_particles *p;
-      struct sph_system *s = cell(&m, 1e8, 0.5, 0, 216 * pow(spacing, 3), &p);
+      SPH_PARTICLES *p = NULL;
+      SPH_SYSTEM *s = cell(&m, 1e8, 0.5, 0, 216 * pow(spacing, 3), &p);
       for (size_t i = 0; i < s->n; i++) {
         s->c.pressure[i] = pressure[tension];
         for (int k = 0; k < 5; k++)
@@ -237,8 +229,6 @@ TEST(strain_of_flaws) {
         assert_true(s->c.open_below[i] > expected[tension] * (1 - 1e-7));
         assert_true(s->c.damage_cap[i] > 0);
       }
-      sph_system_free(s);
-      sph_particles_free(p);
     }
 }
 
@@ -251,10 +241,10 @@ TEST(pores) {
                                           .solid_pressure = 3e8,
                                           .sound_speed = 1800};
   const struct case_block block = {.count = {6, 6, 6}, .spacing = spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700 / 1.5, 1.21, SPH_WITH_STRESS);
+  SPH_PARTICLES *p = case_make(&block, 1, 2700 / 1.5, 1.21, SPH_WITH_STRESS);
   const struct sph_body_physics body = {.material = m, .strength = true};
   const struct case_parameters parameters = case_parameters_default();
-  struct sph_system *s = case_system(p, 1, &body, &parameters);
+  SPH_SYSTEM *s = case_system(p, 1, &body, &parameters);
   for (size_t i = 0; i < s->n; i++) {
     s->c.distention[i] = 1.4;
     s->c.pressure[i] = 1e6 * (double)i;
@@ -267,8 +257,6 @@ TEST(pores) {
     const double want = bound(&m, 1.4 * s->c.pressure[i], (double)(i % 5) / 4, 0) / 1.4;
     assert_true(fabs(s->c.stress[1][i] - want) < 1e-13 * 1e9); /* rounding */
   }
-  sph_system_free(s);
-  sph_particles_free(p);
 }
 
 /* On only where the material has the law, in the place of von Mises; a limit below the cohesion is refused. */

@@ -233,7 +233,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
     fail_msg("%s", error.message);
   c.physics[0].flaws = flaws;
   sph_bodies_stretch(p, c.range[0], centre, axis, rate, solid_poisson(m));
-  unsigned char *in = malloc(p->n);
+  OWNED unsigned char *in = malloc(p->n);
   double count = 0;
   for (size_t i = 0; i < p->n; i++) {
     in[i] = fabs(p->z[i]) < middle.half;
@@ -263,7 +263,6 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   for (size_t i = 0; i < p->n; i++)
     r.broken += in[i] && p->damage_cbrt[i] > cbrt(0.9) ? 1 / count : 0;
   r.cracks = r.broken * 2 * middle.half / (2 * c.range[0].spacing);
-  free(in);
   sph_flaws_free(flaws);
   solid_end(&c);
   return r;

@@ -44,7 +44,7 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
       m->density);
   const int moves = kind == SHEAR_WAVE ? (along + 1) % 3 : along;
   const double k = 2 * M_PI / length;
-  double *shape = malloc(p->n * sizeof *shape);
+  OWNED double *shape = malloc(p->n * sizeof *shape);
   for (size_t i = 0; i < p->n; i++) {
     shape[i] = sin(k * solid_position(p, along)[i]);
     solid_velocity(p, moves)[i] = 1e-4 * exact * shape[i];
@@ -61,7 +61,6 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   }
   struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n,
                    length / spacing};
-  free(shape);
   solid_end(&c);
   return w;
 }
@@ -168,7 +167,7 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
   const double speed = 1e-4 * sqrt(solid_young(m) / m->density), k = 2 * M_PI / length, nu = solid_poisson(m);
-  double *shape = malloc(p->n * sizeof *shape);
+  OWNED double *shape = malloc(p->n * sizeof *shape);
   for (size_t i = 0; i < p->n; i++) {
     shape[i] = sin(k * p->z[i]);
     p->vz[i] = speed * shape[i];
@@ -187,7 +186,6 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   }
   struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n,
                    length / (radius / radius_over_h / SPH_BODIES_H)};
-  free(shape);
   solid_end(&c);
   return w;
 }
