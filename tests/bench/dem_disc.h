@@ -14,13 +14,13 @@ static inline struct dem_inputs dem_disc_inputs(void) {
 }
 
 static inline bool dem_disc_tessellation(double radius, double spacing, uint64_t seed, struct dem_tessellation **out,
-                                         struct error *error) {
+                                         struct error *e) {
   const struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC,
                                       .spacing = spacing,
                                       .disorder = 1.0,
                                       .radius = radius,
                                       .seed = seed};
-  return dem_tessellation_make(&lattice, out, error) == STATUS_OK;
+  return dem_tessellation_make(&lattice, out, e) == STATUS_OK;
 }
 
 static inline uint32_t dem_disc_centre(const struct dem_tessellation *t) {

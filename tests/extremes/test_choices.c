@@ -135,7 +135,7 @@ static void hear_words(const struct scene *scene) {
 
 /* ---- runs ---- */
 
-static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot, struct error *error) {
+static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot, struct error *e) {
   union {
     struct dem_results dem;
     struct sph_results sph;
@@ -145,15 +145,15 @@ static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot
   size_t count = 0;
   void *run = NULL;
   bool finished = false;
-  if (scene->kind->prepare(scene->inputs, 1, &run, error) != STATUS_OK)
+  if (scene->kind->prepare(scene->inputs, 1, &run, e) != STATUS_OK)
     return false;
   if (scene->kind == &sph_engine)
     for (size_t b = 0; b < ((struct sph_run *)run)->system->body_count; b++)
       walked |= ((struct sph_run *)run)->system->solid[b].modules.word[0];
-  assert_int_equal(scene->kind->step(run, steps, &finished, error), STATUS_OK);
+  assert_int_equal(scene->kind->step(run, steps, &finished, e), STATUS_OK);
   if (snapshot)
-    assert_int_equal(scene->kind->write_snapshot(run, snapshot, error), STATUS_OK);
-  assert_int_equal(scene->kind->finish(run, &outcome, &results, &fragments, &count, error), STATUS_OK);
+    assert_int_equal(scene->kind->write_snapshot(run, snapshot, e), STATUS_OK);
+  assert_int_equal(scene->kind->finish(run, &outcome, &results, &fragments, &count, e), STATUS_OK);
   hear_words(scene);
   hear_run(scene->kind, run, &outcome, &results, fragments, count);
   scene->kind->free(run);
@@ -162,7 +162,6 @@ static bool runs(const struct scene *scene, uint64_t steps, const char *snapshot
 
 static struct scene *small_scene(size_t k) {
   struct scene *scene = NULL;
-  struct error error = {0};
   if (scene_load(smallest[k].scene, NULL, &scene, &error))
     fail_msg("%s: %s", smallest[k].scene, error.message);
   for (const char *const *set = smallest[k].sets; *set; set++) {
@@ -184,7 +183,6 @@ TEST(every_scene_runs) {
   }
   for (size_t k = 0; k < SMALLEST; k++) {
     SCENE scene = small_scene(k);
-    struct error error = {0};
     if (scene_check(scene, &error))
       fail_msg("%s: %s", smallest[k].scene, error.message);
     hear();
@@ -197,7 +195,6 @@ TEST(every_scene_runs) {
 
 static bool chosen(const struct scene *scene, const char *path, const char *text) {
   SCENE other = scene_copy(scene);
-  struct error error = {0};
   const bool ran = scene_set_text(other, path, text, &error) == STATUS_OK && scene_check(other, &error) == STATUS_OK &&
                    runs(other, 5, NULL, &error);
   if (!ran)
@@ -235,7 +232,6 @@ TEST(every_choice_runs) {
 
 static void tell(const struct scene *scene, const char *path, double number) {
   SCENE other = scene_copy(scene);
-  struct error error = {0};
   const struct field_value value = {.kind = FIELD_REAL, .number = number};
   if (scene_set(other, path, &value, &error) || scene_check(other, &error)) {
     fprintf(heard[SAID].file, "%s\n", error.message);
@@ -373,7 +369,6 @@ enum { IDLE = sizeof idle / sizeof *idle };
 
 /* The bits of a run; NULL: the scene refuses the value. The caller frees them. */
 static char *bits_of(struct scene *scene, size_t *size) {
-  struct error error = {0};
   hear();
   const bool ran = scene_check(scene, &error) == STATUS_OK && runs(scene, 400, NULL, &error);
   for (size_t h = 0; h < HASHES; h++)
@@ -394,7 +389,6 @@ struct acting {
 
 static void try_value(struct acting *a, const struct field *row, const char *text, double number) {
   SCENE other = scene_copy(a->scene);
-  struct error error = {0};
   const struct field_value value = {.kind = FIELD_REAL, .number = number};
   size_t size;
   if (a->other == 0 && (text ? scene_set_text(other, row->path, text, &error)
@@ -471,7 +465,6 @@ TEST(every_input_acts) {
 }
 
 static void begin_and_end(void *context) {
-  struct error error = {0};
   hear();
   assert_true(runs(context, 2, NULL, &error));
   for (size_t h = 0; h < HASHES; h++) {

@@ -714,8 +714,7 @@ static bool is_marked(const struct twin *twin, const char *const *more) {
   sets[count] = NULL;
   const union run_case_inputs inputs = run_case(twin->scene, sets);
   struct scene *scene = NULL;
-  struct error error;
-  assert_int_equal(scene_load(twin->scene, NULL, &scene, &error), STATUS_OK);
+  OK(scene_load(twin->scene, NULL, &scene, &error));
   const struct engine_kind *kind = scene->kind;
   scene_free(scene);
   const struct ran ran = run_case_run(kind, &inputs, 1);

@@ -74,10 +74,8 @@ TEST(thresholds_of_large_modulus_have_one_value) {
   const double modulus = 1e6;
   const struct dem_inputs inputs[] = {DISC("threshold.modulus=off"), DISC("threshold.modulus=1e6")};
   struct dem_run *run[2] = {NULL, NULL};
-  struct error error = {0};
   for (int k = 0; k < 2; k++)
-    if (dem_run_create(&inputs[k], 3, &run[k], &error))
-      fail_msg("%s", error.message);
+    OK(dem_run_create(&inputs[k], 3, &run[k], &error));
   const struct dem_system *all = run[0]->system, *drawn = run[1]->system;
   for (size_t slot = 0; slot < all->bond_capacity * DEM_BLOCK; slot++) {
     const struct dem_bond_block *a = &all->bond[slot / DEM_BLOCK], *b = &drawn->bond[slot / DEM_BLOCK];

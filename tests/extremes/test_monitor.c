@@ -22,9 +22,7 @@ static struct dem_run *disc(const char *extra) {
   const struct dem_inputs inputs = DEM_CASE("disc-explosion", "body.diameter=8 cm", "charge.energy=2 kJ/m",
                                             "stop.end_time=5 ms", extra);
   struct dem_run *run = NULL;
-  struct error error = {0};
-  if (dem_run_create(&inputs, 3, &run, &error))
-    fail_msg("%s", error.message);
+  OK(dem_run_create(&inputs, 3, &run, &error));
   frame_advance(&run->frame, BEFORE);
   assert_false(run->state.frame.finished);
   return run;
@@ -81,9 +79,7 @@ static struct sph_run *sphere(const char *extra) {
                                             "fidelity.projectile_spacing=0.6", "stop.end_time=1 ms",
                                             "stop.quiet_time=1 ms", extra);
   struct sph_run *run = NULL;
-  struct error error = {0};
-  if (sph_run_create(&inputs, 3, &run, &error))
-    fail_msg("%s", error.message);
+  OK(sph_run_create(&inputs, 3, &run, &error));
   assert_int_equal(frame_advance(&run->frame, BEFORE), STATUS_OK);
   assert_false(run->state.frame.finished);
   return run;
@@ -169,10 +165,9 @@ TEST(drift_within_a_wide_bound_is_flagged) {
   struct dem_results results;
   OWNED struct fragment *fragments = NULL;
   size_t count;
-  struct error error;
   run->state.frame.closed_start *= 1.05;
   frame_advance(&run->frame, LATE);
-  assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &count, &error), STATUS_OK);
+  OK(dem_report_finish(run, &outcome, &results, &fragments, &count, &error));
   assert_string_equal(outcome.warnings, "drift"); /* the run goes on: it is not cut */
   dem_run_free(run);
 }
@@ -243,11 +238,11 @@ TEST(short_smoothing_lengths_are_flagged) {
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
     const struct sph_inputs in = SMALL_PLATE(cases[c].smoothing, cases[c].correction);
     const struct ran ran = finished(&sph_engine, &in);
-    const double error = fabs(ran.results.sph.shock.pressure / ran.results.sph.shock.pressure_exact - 1);
-    print_message("%s, %s: pressure off by %.3f\n", cases[c].smoothing, cases[c].correction, error);
+    const double deviation = fabs(ran.results.sph.shock.pressure / ran.results.sph.shock.pressure_exact - 1);
+    print_message("%s, %s: pressure off by %.3f\n", cases[c].smoothing, cases[c].correction, deviation);
     assert_string_equal(ran.outcome.warnings, cases[c].words);
     assert_int_equal(strstr(known(&sph_engine, &in), "kernel") != NULL, strstr(cases[c].words, "kernel") != NULL);
-    assert_true(error >= cases[c].least && error <= cases[c].most);
+    assert_true(deviation >= cases[c].least && deviation <= cases[c].most);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "campaign/scheduler/run.h"
 #include "campaign/scheduler/scheduler.h"
 #include "engine/random.h"
+#include "tests/support/owned.h"
 #include "tests/support/toy_engine.h"
 
 static inline struct field_value play_real(double x) {
@@ -62,7 +63,7 @@ struct play {
   char *says;                /* message of the status that ended it, malloc'd */
 };
 
-static status play_farm(struct play *play, struct scheduler *scheduler, struct error *error) {
+static status play_farm(struct play *play, struct scheduler *scheduler, struct error *e) {
   struct {
     struct farm_task task;
     uint8_t *bytes;
@@ -76,7 +77,7 @@ static status play_farm(struct play *play, struct scheduler *scheduler, struct e
       memcpy(out[count].bytes, out[count].task.bytes, out[count].task.size);
       count++;
     }
-    code = manager.tick(manager.context, count, error);
+    code = manager.tick(manager.context, count, e);
     if (count == 0 || code != STATUS_OK)
       break;
     if (play->stop_after && play->reports >= play->stop_after) {
@@ -103,13 +104,13 @@ static status play_farm(struct play *play, struct scheduler *scheduler, struct e
       report.ending = FARM_TIME_LIMIT;
       report.message = "ended at its time limit";
     } else {
-      code = run_work(out[pick].bytes, out[pick].task.size, &bytes, &report.size, error);
+      code = run_work(out[pick].bytes, out[pick].task.size, &bytes, &report.size, e);
       report.bytes = bytes;
     }
     free(out[pick].bytes);
     out[pick] = out[--count];
     if (code == STATUS_OK)
-      code = manager.report(manager.context, &report, error);
+      code = manager.report(manager.context, &report, e);
     play->reports++;
   }
   while (count > 0)

@@ -1,18 +1,32 @@
-/* cmocka, and what it needs before it. A test is `TEST(name) { ... }`; a program runs the tests of its file in the
- * order in which they stand there. A file whose tests need something before or after them defines CHECK_OWN_MAIN first
- * and a main() that calls check_run(). */
+/* cmocka, and what most tests need beside it. A test is `TEST(name) { ... }`; a program runs the tests of its file in
+ * the order in which they stand there. A file whose tests need something before or after them defines CHECK_OWN_MAIN
+ * first and a main() that calls check_run(). */
 #pragma once
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
 #include "tests/support/owned.h"
+
+__attribute__((unused)) static struct error error; /* of the last call that failed */
+
+/* A call that must succeed; what it says of a failure is in `error`. */
+#define OK(call)                                                                                                       \
+  do {                                                                                                                 \
+    error.message[0] = 0;                                                                                              \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
+  } while (0)
 
 static struct CMUnitTest check_tests[100];
 static size_t check_count;

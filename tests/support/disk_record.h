@@ -92,11 +92,11 @@ static const char *disk_inside_of_name(const char *path, char absolute[2 * PATH_
 static const char *disk_inside_of_descriptor(int descriptor, char path[PATH_MAX]) {
   if (!disk.root[0])
     return NULL;
-  const int error = errno;
+  const int before = errno;
   char link[64];
   snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
   const ssize_t length = readlink(link, path, PATH_MAX - 1);
-  errno = error;
+  errno = before;
   if (length <= 0)
     return NULL;
   path[length] = '\0';

@@ -1,10 +1,6 @@
 /* A table of a few rows of all kinds, and the report of a document that is read with it. */
 #pragma once
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -76,7 +72,6 @@ static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing",
 /* Reads a text. Returns the report (malloc'd), or NULL if the text was good. */
 static char *report_of(const char *text, size_t size, struct thing *thing) {
   struct document *document;
-  struct error error = {0};
   static const char *const also[] = {"note", NULL};
   field_defaults(&table, thing);
   status code = document_parse("a.yaml", text, size, &document, &error);

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 
 #include "schemas/clock.h"
+#include "tests/support/check.h"
 #include "tests/support/farm_tasks.h"
 
 #define TAG_VARIABLE "CLAST_FARM_TEST_TAG"
@@ -59,8 +60,8 @@ static inline status append_line(const char *variable, const char *line) {
   return STATUS_OK;
 }
 
-static inline status journal_report(void *context, const struct farm_report *report, struct error *error) {
-  const status result = task_list_report(context, report, error);
+static inline status journal_report(void *context, const struct farm_report *report, struct error *e) {
+  const status result = task_list_report(context, report, e);
   char line[64];
   snprintf(line, sizeof line, "%llu %d %d\n", (unsigned long long)report->id, (int)report->ending, report->rank);
   return append_line("CLAST_FARM_TEST_JOURNAL", line) == STATUS_OK ? result : STATUS_IO;
@@ -69,7 +70,6 @@ static inline status journal_report(void *context, const struct farm_report *rep
 static inline int program_work(char **argv) {
   struct launch it;
   struct task_list list;
-  struct error error = {0};
   struct farm *farm = NULL;
   sscanf(argv[2], "%d,%d,%d,%d,%d,%lf,%lf,%lf,%lf,%d,%d", &it.ranks, &it.slots, &it.in_process, &it.count, &it.kind,
          &it.amount, &it.time_limit_s, &it.lost_after_s, &it.drain_s, &it.special, &it.special_kind);

@@ -75,10 +75,10 @@ static inline void task_sleep(double seconds) {
 }
 
 static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **result, size_t *result_size,
-                               struct error *error) {
+                               struct error *e) {
   struct task task;
   if (size < sizeof task)
-    return status_fail(error, STATUS_CONTENT, "a task of %zu bytes", size);
+    return status_fail(e, STATUS_CONTENT, "a task of %zu bytes", size);
   memcpy(&task, bytes, sizeof task);
   size_t big = 0;
   double waited = task.kind == TASK_BURN ? task_kept_waiting() : 0;
@@ -97,11 +97,11 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
   case TASK_HANG:
     for (;;)
       pause();
-  case TASK_FAIL: return status_fail(error, (status)task.number, "task %d cannot", (int)task.id);
+  case TASK_FAIL: return status_fail(e, (status)task.number, "task %d cannot", (int)task.id);
   case TASK_ALLOC: {
     volatile char *memory = malloc((size_t)task.amount);
     if (!memory)
-      return status_fail(error, STATUS_MEMORY, "no %g bytes", task.amount);
+      return status_fail(e, STATUS_MEMORY, "no %g bytes", task.amount);
     for (size_t i = 0; i < (size_t)task.amount; i += 4096)
       memory[i] = 1;
     free((void *)memory);
@@ -123,7 +123,7 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
   *result_size = sizeof(struct task_answer) + big;
   *result = malloc(*result_size);
   if (!*result)
-    return status_fail(error, STATUS_MEMORY, "no memory");
+    return status_fail(e, STATUS_MEMORY, "no memory");
   memset(*result, (int)(task.id & 0xff), *result_size);
   memcpy(*result, &(struct task_answer){task.id, task_value(task.id), waited}, sizeof(struct task_answer));
   return STATUS_OK;
@@ -181,12 +181,12 @@ static inline bool task_list_next(void *context, struct farm_task *task) {
   return true;
 }
 
-static inline status task_list_report(void *context, const struct farm_report *report, struct error *error) {
+static inline status task_list_report(void *context, const struct farm_report *report, struct error *e) {
   struct task_list *list = context;
   const size_t id = report->id;
   list->reported++;
   if (id >= list->count)
-    return status_fail(error, STATUS_INTERNAL, "unknown id");
+    return status_fail(e, STATUS_INTERNAL, "unknown id");
   list->reports[id]++;
   list->endings[id] = (int)report->ending;
   list->exit_codes[id] = report->exit_code;
@@ -214,14 +214,14 @@ static inline status task_list_report(void *context, const struct farm_report *r
       list->wrong++;
   }
   if (list->stop_after && list->reported >= list->stop_after)
-    return status_fail(error, list->stop_with, "the caller has enough");
+    return status_fail(e, list->stop_with, "the caller has enough");
   return STATUS_OK;
 }
 
-static inline status task_list_tick(void *context, int running, struct error *error) {
+static inline status task_list_tick(void *context, int running, struct error *e) {
   struct task_list *list = context;
   (void)running;
-  (void)error;
+  (void)e;
   list->ticks++;
   return STATUS_OK;
 }

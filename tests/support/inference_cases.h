@@ -66,7 +66,7 @@ static inline void case_run(struct case_fit *fit, case_model model, const double
 /* A whole fit: rounds of the ensemble until the data are fully assimilated, one more round there, surfaces, posterior.
  */
 static inline status case_solve(struct case_fit *fit, case_model model, const struct posterior_datum *data,
-                                const bool *bounded, uint64_t seed, struct error *error) {
+                                const bool *bounded, uint64_t seed, struct error *why) {
   const size_t p = fit->inputs, d = fit->outputs;
   static double packed[INFERENCE_OUTPUTS * CASE_POINTS * CASE_REPLICATES];
   double members[CASE_MEMBERS * INFERENCE_INPUTS], g[CASE_MEMBERS * INFERENCE_OUTPUTS], y[INFERENCE_OUTPUTS];
@@ -91,9 +91,9 @@ static inline status case_solve(struct case_fit *fit, case_model model, const st
       for (size_t k = 0; k < d; k++)
         g[j * d + k] = surfaces_mean(&runs, k, fit->points - CASE_MEMBERS + j);
     e.least = (1 - e.tempered) / (double)(CASE_ROUNDS - 1 - e.round);
-    code = surfaces_errors(&runs, data, bounded, CASE_MEMBERS, gamma, error);
+    code = surfaces_errors(&runs, data, bounded, CASE_MEMBERS, gamma, why);
     if (code == STATUS_OK)
-      code = ensemble_kalman_step(&e, error);
+      code = ensemble_kalman_step(&e, why);
     e.round++;
   }
   if (code == STATUS_OK)
@@ -101,8 +101,8 @@ static inline status case_solve(struct case_fit *fit, case_model model, const st
   fit->rounds = e.round + 1;
   const struct surfaces_runs runs = case_runs(fit, packed);
   if (code == STATUS_OK)
-    code = surfaces_fit(&runs, data, bounded, &fit->surfaces, error);
-  return code == STATUS_OK ? posterior_make(&fit->surfaces.model, seed, &fit->posterior, error) : code;
+    code = surfaces_fit(&runs, data, bounded, &fit->surfaces, why);
+  return code == STATUS_OK ? posterior_make(&fit->surfaces.model, seed, &fit->posterior, why) : code;
 }
 
 static inline void case_clear(struct case_fit *fit) {

@@ -3,11 +3,6 @@
 #pragma once
 
 #include <malloc.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "tests/support/check.h"
 

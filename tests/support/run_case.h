@@ -1,12 +1,6 @@
 /* Runs a built-in scene of any engine, with a few overrides, in a test. Any error fails the test. */
 #pragma once
 
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/dem/dem.h"
 #include "engine/scene.h"
 #include "engine/sph/sph.h"
@@ -22,7 +16,6 @@ union run_case_inputs {
 /* `overrides`: "path=text" items, closed by NULL; NULL for none. */
 UNUSED static union run_case_inputs run_case(const char *scene_name, const char *const *overrides) {
   SCENE scene = NULL;
-  struct error error = {0};
   union run_case_inputs inputs;
   if (scene_load(scene_name, NULL, &scene, &error))
     fail_msg("%s: %s", scene_name, error.message);
@@ -55,7 +48,6 @@ struct ran {
 /* Runs to the end, `chunk` steps at a time; 0: chunks of 1 to 23 steps. */
 UNUSED static struct ran run_case_end(const struct engine_kind *kind, void *run, uint64_t chunk) {
   struct ran ran = {0};
-  struct error error = {0};
   bool finished = false;
   for (uint64_t k = 1; !finished; k = k * 7 % 23 + 1)
     if (kind->step(run, chunk ? chunk : k, &finished, &error))
@@ -66,7 +58,6 @@ UNUSED static struct ran run_case_end(const struct engine_kind *kind, void *run,
 }
 
 UNUSED static struct ran run_case_run(const struct engine_kind *kind, const void *inputs, uint64_t seed) {
-  struct error error = {0};
   void *run = NULL;
   if (kind->prepare(inputs, seed, &run, &error))
     fail_msg("prepare: %s", error.message);

@@ -1,11 +1,6 @@
 /* Small solids for the tests of the moving system: cubic blocks, basalt, and a few measured quantities. */
 #pragma once
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
 #include "tests/support/check.h"
@@ -65,9 +60,7 @@ static CASE_UNUSED struct sph_system *case_system(const struct sph_particles *p,
                                                   const struct sph_body_physics *physics,
                                                   const struct case_parameters *parameters) {
   struct sph_system *s = NULL;
-  struct error error = {0};
-  if (sph_system_create(p, bodies, physics, &parameters->in, &parameters->domain, &s, &error) != STATUS_OK)
-    fail_msg("%s", error.message);
+  OK(sph_system_create(p, bodies, physics, &parameters->in, &parameters->domain, &s, &error));
   return s;
 }
 

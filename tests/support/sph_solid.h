@@ -9,12 +9,6 @@
  *   solid_end(&c); */
 #pragma once
 
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
 #include "engine/sph/step/system.h"
@@ -109,7 +103,6 @@ UNUSED static struct solid_case solid_make(size_t bodies) {
 }
 
 UNUSED static void solid_build(struct solid_case *c, int arrays) {
-  struct error error = {0};
   for (size_t b = 0; b < c->bodies; b++)
     c->body[b].density = c->physics[b].material.density;
   if (sph_bodies_make(c->body, c->bodies, arrays, &c->particles, c->range, &error))
@@ -118,7 +111,6 @@ UNUSED static void solid_build(struct solid_case *c, int arrays) {
 }
 
 UNUSED static void solid_start(struct solid_case *c) {
-  struct error error = {0};
   if (sph_system_create(c->particles, c->bodies, c->physics, &c->parameters.in, &c->parameters.domain, &c->system,
                         &error))
     fail_msg("system: %s", error.message);

@@ -1,16 +1,8 @@
-/* Common parts of tests of the store: calls that must succeed, bytes of a file, one number of a query. Include cmocka
- * first. */
+/* Common parts of tests of the store: bytes of a file, one number of a query. */
 #pragma once
 
+#include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
-
-static struct error error;
-#define OK(call)                                                                                                       \
-  do {                                                                                                                 \
-    error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK)                                                                                           \
-      fail_msg("%s: %s", #call, error.message);                                                                        \
-  } while (0)
 
 /* The store's bits as text, malloc'd. */
 __attribute__((unused)) static char *dump(const char *path) {

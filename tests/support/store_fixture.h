@@ -10,6 +10,7 @@
 
 #include "db/ask/ask.h"
 #include "db/store/store.h"
+#include "tests/support/owned.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
@@ -187,26 +188,26 @@ static const char *const fixture_axes[] = {"material.m", "material.k"};
 /* Adds points_m x points_k points with `replicates` runs each: point after point, or the last replicate of every point
  * first. */
 static inline status fixture_populate(struct store *store, int points_m, int points_k, int64_t replicates,
-                                      bool by_replicate, struct error *error) {
+                                      bool by_replicate, struct error *e) {
   struct fixture_inputs inputs;
   OWNED struct fixture_run *f = malloc(sizeof *f);
   int64_t campaign = 0, session = 0, point = 0;
-  status result = store_add_campaign(store, "made-up", "name: made-up", "{}", &campaign, error);
+  status result = store_add_campaign(store, "made-up", "name: made-up", "{}", &campaign, e);
   if (result == STATUS_OK)
-    result = store_begin_session(store, "{\"version\":\"test\"}", &session, error);
+    result = store_begin_session(store, "{\"version\":\"test\"}", &session, e);
   int64_t outer = by_replicate ? replicates : 1;
   for (int64_t r = 0; result == STATUS_OK && r < outer; r++)
     for (int p = 0; result == STATUS_OK && p < points_m * points_k; p++) {
       struct scene scene = fixture_scene(&inputs, 6 + p / points_k, pow(10, 30 + p % points_k));
-      result = store_add_point(store, campaign, &scene, 2, fixture_axes, &point, error);
+      result = store_add_point(store, campaign, &scene, 2, fixture_axes, &point, e);
       int64_t from = by_replicate ? replicates - 1 - r : 0, to = by_replicate ? from + 1 : replicates;
       for (int64_t q = from; result == STATUS_OK && q < to; q++) {
         fixture_fill(f, &scene, point, session, q, FIXTURE_FRAGMENTS);
-        result = store_add_run(store, &f->run, error);
+        result = store_add_run(store, &f->run, e);
       }
     }
   if (result == STATUS_OK)
-    result = store_end_session(store, session, "ok", error);
+    result = store_end_session(store, session, "ok", e);
   return result;
 }
 

@@ -2,9 +2,6 @@
  */
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_qrng.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "campaign/design/design.h"
@@ -72,9 +69,8 @@ TEST(spaced_levels_are_written_numbers) {
 TEST(grid_walks_the_last_axis_fastest) {
   struct design_axis axes[3] = {levels(levels_a, 3), levels(levels_b, 2), law(DESIGN_AXIS_LINKED, 2, 0.5, 0, 0)};
   struct design *design;
-  struct error error = {0};
   axes[2].linked = 1;
-  assert_int_equal(design_create(DESIGN_GRID, axes, 3, 0, 0, &design, &error), STATUS_OK);
+  OK(design_create(DESIGN_GRID, axes, 3, 0, 0, &design, &error));
   assert_int_equal(design_points(design), 6);
   double expected[6][3] = {{6, 1, 2.5}, {6, 2, 4.5}, {9, 1, 2.5}, {9, 2, 4.5}, {12, 1, 2.5}, {12, 2, 4.5}};
   struct field_value values[3];
@@ -90,10 +86,9 @@ TEST(grid_walks_the_last_axis_fastest) {
 TEST(list_goes_in_step_and_links_by_level) {
   struct design_axis axes[3] = {levels(levels_a, 3), levels(levels_c, 3), levels(levels_c, 3)};
   struct design *design;
-  struct error error = {0};
   axes[2].kind = DESIGN_AXIS_LINKED;
   axes[2].linked = 0;
-  assert_int_equal(design_create(DESIGN_LIST, axes, 3, 0, 0, &design, &error), STATUS_OK);
+  OK(design_create(DESIGN_LIST, axes, 3, 0, 0, &design, &error));
   assert_int_equal(design_points(design), 3);
   struct field_value values[3];
   for (int i = 0; i < 3; i++) {
@@ -108,7 +103,6 @@ TEST(list_goes_in_step_and_links_by_level) {
 }
 
 TEST(refusals_say_the_remedy) {
-  struct error error = {0};
   struct design *design;
   struct design_axis uniform = law(DESIGN_AXIS_UNIFORM, 0, 1, -HUGE_VAL, HUGE_VAL);
   assert_int_equal(design_create(DESIGN_GRID, &uniform, 1, 0, 0, &design, &error), STATUS_CONTENT);
@@ -123,7 +117,7 @@ TEST(refusals_say_the_remedy) {
   struct design_axis many[41];
   for (int i = 0; i < 41; i++)
     many[i] = uniform;
-  assert_int_equal(design_create(DESIGN_SOBOL, many, 40, 8, 0, &design, &error), STATUS_OK);
+  OK(design_create(DESIGN_SOBOL, many, 40, 8, 0, &design, &error));
   design_free(design);
   assert_int_equal(design_create(DESIGN_SOBOL, many, 41, 8, 0, &design, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "41 varied inputs"));
@@ -182,10 +176,9 @@ TEST(latin_projections_are_stratified) {
 TEST(sobol_is_gsl_with_origin_and_shift) {
   enum { D = 40, N = 1024 };
   struct design_sobol *sobol, *again, *other;
-  struct error error;
-  assert_int_equal(design_sobol_create(D, 7, &sobol, &error), STATUS_OK);
-  assert_int_equal(design_sobol_create(D, 7, &again, &error), STATUS_OK);
-  assert_int_equal(design_sobol_create(D, 8, &other, &error), STATUS_OK);
+  OK(design_sobol_create(D, 7, &sobol, &error));
+  OK(design_sobol_create(D, 7, &again, &error));
+  OK(design_sobol_create(D, 8, &other, &error));
   gsl_qrng *gsl = gsl_qrng_alloc(gsl_qrng_sobol, D);
   static int strata[D][N];
   int differs = 0;
@@ -317,9 +310,8 @@ TEST(a_million_points_are_a_counter) {
                                 law(DESIGN_AXIS_LOG_UNIFORM, 1, 10, -HUGE_VAL, HUGE_VAL), levels(levels_a, 3)};
   for (int kind = DESIGN_RANDOM; kind <= DESIGN_SOBOL; kind++) {
     struct design *design;
-    struct error error;
     struct field_value values[3];
-    assert_int_equal(design_create((enum design_kind)kind, axes, 3, 1000000, 1, &design, &error), STATUS_OK);
+    OK(design_create((enum design_kind)kind, axes, 3, 1000000, 1, &design, &error));
     clock_t begin = clock();
     assert_true(design_next(design, values));
     assert_true(clock() - begin < CLOCKS_PER_SEC / 10);

@@ -1,9 +1,6 @@
 /* Campaign documents: the meaning of good ones and the errors of bad ones. Every error has the line, the path and the
  * remedy. */
 #include <dirent.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "campaign/design/design.h"
 #include "campaign/document/campaign.h"
@@ -12,13 +9,12 @@
 
 #define HEAD "name: t\nscene: disc-explosion\n"
 
-static status parse(const char *text, struct campaign **campaign, struct error *error) {
-  return campaign_parse("t.yaml", text, strlen(text), NULL, campaign, error);
+static status parse(const char *text, struct campaign **campaign, struct error *e) {
+  return campaign_parse("t.yaml", text, strlen(text), NULL, campaign, e);
 }
 
 static uint64_t points_of(const struct campaign *campaign) {
   struct design *design = NULL;
-  struct error error = {0};
   if (design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
                     (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, &error) != STATUS_OK)
     fail_msg("%s", error.message);
@@ -29,7 +25,6 @@ static uint64_t points_of(const struct campaign *campaign) {
 
 static struct campaign *good(const char *text) {
   struct campaign *campaign = NULL;
-  struct error error = {0};
   if (parse(text, &campaign, &error) != STATUS_OK)
     fail_msg("refused:\n%s\n%s", text, error.message);
   return campaign;
@@ -38,7 +33,6 @@ static struct campaign *good(const char *text) {
 /* `first` opens the report; it contains the others, separated by '|', in any place. */
 static void bad(const char *text, const char *expected) {
   struct campaign *campaign = NULL;
-  struct error error = {0};
   assert_int_equal(parse(text, &campaign, &error), STATUS_CONTENT);
   assert_null(campaign);
   char *copy = strdup(expected), *rest = NULL;
@@ -51,7 +45,6 @@ static void bad(const char *text, const char *expected) {
 /* The report has one error. */
 static void once(const char *text, const char *expected) {
   struct campaign *campaign = NULL;
-  struct error error = {0};
   assert_int_equal(parse(text, &campaign, &error), STATUS_CONTENT);
   const char *first = strstr(error.message, "error: ");
   if (!first || !strstr(error.message, expected) || strstr(first + 1, "error: "))
@@ -168,7 +161,6 @@ TEST(values_that_do_not_fit_make_no_point) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[200];
-    struct error error = {0};
     snprintf(text, sizeof text, HEAD "%s", cases[i].vary);
     CAMPAIGN campaign = good(text);
     assert_null(campaign_point_scene(campaign, cases[i].values, &error));
@@ -180,7 +172,6 @@ TEST(values_that_do_not_fit_make_no_point) {
 
 TEST(independent_seeds_follow_the_point) {
   CAMPAIGN campaign = good(HEAD "seeds: {first: 10, independent: true}\nvary: {strain: [1 %, 3 %]}\n");
-  struct error error;
   SCENE a = campaign_point_scene(campaign, &campaign->axes[0].levels[0], &error);
   SCENE b = campaign_point_scene(campaign, &campaign->axes[0].levels[1], &error);
   assert_true(campaign_seed(campaign, a, 0) != campaign_seed(campaign, b, 0));
@@ -216,8 +207,7 @@ TEST(one_input_is_set_once) {
   static const char twice[] = HEAD "set: {body.diameter: 8 cm, diameter: 9 cm}\n";
   bad(twice, "t.yaml:3:|set.diameter: the same input as set.body.diameter");
   struct campaign *campaign = NULL;
-  struct error error = {0};
-  assert_int_equal(campaign_parse_stored("t", twice, NULL, &campaign, &error), STATUS_OK);
+  OK(campaign_parse_stored("t", twice, NULL, &campaign, &error));
   campaign_free(campaign);
 
   /* The command line replaces the value of the document, under any name. */
@@ -226,7 +216,7 @@ TEST(one_input_is_set_once) {
   fputs(HEAD "set: {body.diameter: 8 cm}\n", file);
   fclose(file);
   const struct campaign_changes once = {1, (const char *const[]){"diameter=9 cm"}, 0, 0};
-  assert_int_equal(campaign_load_changed("t-set.yaml", &once, &campaign, &error), STATUS_OK);
+  OK(campaign_load_changed("t-set.yaml", &once, &campaign, &error));
   assert_null(strstr(campaign->text, "8 cm"));
   struct field_value value;
   field_get(field_find(campaign->scene->kind->inputs, "body.diameter", &error), campaign->scene->inputs, &value);
@@ -319,7 +309,6 @@ TEST(all_errors_come_at_once) {
 
 TEST(odd_bytes_are_refused) {
   struct campaign *campaign;
-  struct error error;
   const struct {
     const char *text;
     size_t size;
@@ -352,10 +341,8 @@ TEST(examples_are_ready_to_run) {
     char path[1024];
     struct campaign *campaign = NULL;
     struct plan plan;
-    struct error error = {0};
     snprintf(path, sizeof path, CLAST_SOURCE_DIR "/campaign/examples/%s", entry->d_name);
-    if (campaign_load(path, &campaign, &error) != STATUS_OK)
-      fail_msg("%s", error.message);
+    OK(campaign_load(path, &campaign, &error));
     struct plan_options options = {.no_trial = true, .slots = 2, .store_path = "no-such-store.db"};
     if (plan_make(campaign, &options, &plan, &error) != STATUS_OK)
       fail_msg("%s: %s", path, error.message);
@@ -378,11 +365,10 @@ TEST(stored_rules_of_seeds_are_read) {
   static const char text[] = "name: x\nscene: disc-explosion\nquantity: energy_input\n"
                              "seeds: {until: {half_width: 5, minimum: 10}, max: 20}\n";
   CAMPAIGN campaign = NULL;
-  struct error error = {0};
   assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "ends no point before 41 runs"));
   assert_non_null(strstr(error.message, "half_width"));
-  assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
+  OK(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error));
   assert_true(campaign->maximum == 20 && campaign->until_half_width == 5);
 }
 
@@ -391,19 +377,18 @@ TEST(stored_numbers_are_si) {
   static const char text[] = "name: x\nscene: disc-explosion\nset: {threshold.angle: 0.1}\n"
                              "vary: {threshold.strain: [0.02, 3 %]}\nlimits: {time: 60}\n";
   CAMPAIGN campaign = NULL;
-  struct error error = {0};
   assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
   for (size_t i = 0; i < 3; i++)
     assert_non_null(
         strstr(error.message, (const char *[]){"'0.1 deg' or '0.1 rad'", "'0.02 %' or '2 %'", "'60 s'"}[i]));
-  assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
+  OK(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error));
   assert_true(campaign->axes[0].levels[0].number == 0.02 && campaign->time_limit == 60);
 
   OWNED char *json = scene_json(campaign->scene); /* SI numbers without unit, as in every store */
   SCENE again = NULL;
   assert_non_null(json);
   assert_int_equal(scene_parse("t", json, &again, &error), STATUS_CONTENT);
-  assert_int_equal(scene_parse_json("t", json, &again, &error), STATUS_OK);
+  OK(scene_parse_json("t", json, &again, &error));
   uint8_t first[16], second[16];
   scene_identity(campaign->scene, 1, first);
   scene_identity(again, 1, second);
@@ -414,10 +399,8 @@ static void axis_text(const char *vary, const char *expected) {
   char text[400], *words = NULL;
   size_t size = 0;
   CAMPAIGN campaign = NULL;
-  struct error error = {0};
   snprintf(text, sizeof text, "name: x\nscene: disc-explosion\nvary: {%s}\ndesign: {kind: random, points: 4}\n", vary);
-  if (campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error))
-    fail_msg("%s", error.message);
+  OK(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error));
   FILE *out = open_memstream(&words, &size);
   design_axis_describe(campaign->axes, campaign->axis_count - 1, out);
   fclose(out);

@@ -267,8 +267,7 @@ TEST(fields_are_kept_as_asked) {
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(files_in(kept), 18);
   struct store *store = NULL;
-  struct error error = {0};
-  assert_int_equal(store_open_reader(path, &store, &error), STATUS_OK);
+  OK(store_open_reader(path, &store, &error));
   if (store_check(store, print_line, NULL, &error) !=
       STATUS_OK) /* every file it names is there, and the sums are right */
     fail_msg("%s", error.message);
@@ -277,9 +276,9 @@ TEST(fields_are_kept_as_asked) {
 }
 
 static int fields_left; /* so many fields files can be written */
-static status write_few_fields(void *run, const char *path, struct error *error) {
-  return fields_left-- > 0 ? toy_write_fields(run, path, error)
-                           : status_fail(error, STATUS_IO, "cannot write the fields file '%s': no space", path);
+static status write_few_fields(void *run, const char *path, struct error *e) {
+  return fields_left-- > 0 ? toy_write_fields(run, path, e)
+                           : status_fail(e, STATUS_IO, "cannot write the fields file '%s': no space", path);
 }
 
 /* A full disk: the campaign stops and says so, what ran is stored without fields, and the next invocation makes all. */
@@ -371,11 +370,10 @@ TEST(broken_answers_are_refused) {
   CAMPAIGN campaign = play_campaign(1, 1, 1);
   struct run_request request = {&toy_engine, campaign->scene->inputs, 5, NULL, NULL};
   struct run_result result;
-  struct error error = {0};
   size_t task_size, size;
   OWNED uint8_t *task = run_encode_task(&request, &task_size), *bytes = NULL;
-  assert_int_equal(run_work(task, task_size, &bytes, &size, &error), STATUS_OK);
-  assert_int_equal(run_decode_result(&toy_engine, bytes, size, &result, &error), STATUS_OK);
+  OK(run_work(task, task_size, &bytes, &size, &error));
+  OK(run_decode_result(&toy_engine, bytes, size, &result, &error));
   assert_int_equal(result.fragment_count, 25);
   assert_int_equal(result.estimate_count, ESTIMATES_COUNT);
   run_result_clear(&result);

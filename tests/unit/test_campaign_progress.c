@@ -1,7 +1,4 @@
 /* Progress into a file that is no terminal, and the bar's redraws: how often, how long, what they say. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "campaign/terminal/progress.h"
 #include "tests/support/check.h"

@@ -1,7 +1,5 @@
 /* The stopping rule uses complete prefixes: it is unbiased where "the first n that finished" is not. It never decides
  * before its minimum, grows by its batch and ends at its cap. The cost model learns. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "campaign/design/design.h"

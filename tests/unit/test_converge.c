@@ -1,7 +1,4 @@
 /* Knobs name inputs that exist, ladders are ordered and have their reference, and findings are kept in the store. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <sqlite3.h>
 
@@ -14,11 +11,9 @@
 #include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
-static struct error error;
-
 static struct scene *scene_of(const char *name) {
   struct scene *scene = NULL;
-  assert_int_equal(scene_load(name, NULL, &scene, &error), STATUS_OK);
+  OK(scene_load(name, NULL, &scene, &error));
   return scene;
 }
 
@@ -102,8 +97,7 @@ TEST(graded_bodies_keep_their_zone) {
   const struct sph_inputs *own = scene->inputs;
   struct ladder ladder;
   char *notes = NULL;
-  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "4000,12000,96000", &ladder, &notes, &error),
-                   STATUS_OK);
+  OK(ladder_make(knob_of("sph", "particles"), scene, "4000,12000,96000", &ladder, &notes, &error));
   assert_int_equal(ladder.count, 2); /* 4000 are too few for 3.47 spacings in the radius */
   assert_non_null(strstr(notes, "fidelity.particles = 4000 is left out: fidelity.coarsest 4 allows the 3.47 of "));
   for (size_t l = 0; l < 2; l++) {
@@ -117,7 +111,7 @@ TEST(graded_bodies_keep_their_zone) {
   ladder_clear(&ladder);
   free(notes);
 
-  assert_int_equal(ladder_make(knob_of("sph", "impact_zone"), scene, "2.5,5,10", &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob_of("sph", "impact_zone"), scene, "2.5,5,10", &ladder, &notes, &error));
   assert_int_equal(ladder.count, 2);
   assert_non_null(
       strstr(notes, "fidelity.spacings_per_radius = 10 is left out: fidelity.coarsest 4 allows the 10 of "));
@@ -131,9 +125,9 @@ TEST(graded_bodies_keep_their_zone) {
   free(notes);
 
   /* Where the scene gives the spacing of the zone itself, it follows the number of particles. */
-  assert_int_equal(scene_set_text(scene, "fidelity.spacings_per_radius", "off", &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "fidelity.fine_spacing", "1 mm", &error), STATUS_OK);
-  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "12000,96000", &ladder, &notes, &error), STATUS_OK);
+  OK(scene_set_text(scene, "fidelity.spacings_per_radius", "off", &error));
+  OK(scene_set_text(scene, "fidelity.fine_spacing", "1 mm", &error));
+  OK(ladder_make(knob_of("sph", "particles"), scene, "12000,96000", &ladder, &notes, &error));
   const struct sph_inputs *finer = ladder.level[1].scene->inputs;
   assert_true(is_near(finer->fidelity.fine_spacing, 0.5e-3));
   assert_true(is_near(finer->fidelity.fine_radius, 4e-3));
@@ -151,7 +145,7 @@ TEST(blocks_keep_their_sides) {
     const struct dem_inputs *own = scene->inputs;
     OWNED_BY(ladder_clear) struct ladder ladder;
     OWNED char *notes = NULL;
-    assert_int_equal(ladder_make(knob_of("dem", "grains"), scene, NULL, &ladder, &notes, &error), STATUS_OK);
+    OK(ladder_make(knob_of("dem", "grains"), scene, NULL, &ladder, &notes, &error));
     assert_int_equal(ladder.count, 4);
     for (size_t l = 0; l < ladder.count; l++) {
       const struct dem_inputs *in = ladder.level[l].scene->inputs;
@@ -170,33 +164,32 @@ TEST(levels_of_ones_own) {
   SCENE scene = scene_of("basalt-sphere");
   struct ladder ladder;
   char *notes = NULL;
-  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "3000,1000,93000", &ladder, &notes, &error),
-                   STATUS_OK);
+  OK(ladder_make(knob_of("sph", "particles"), scene, "3000,1000,93000", &ladder, &notes, &error));
   assert_int_equal(ladder.count, 3);
   assert_string_equal(ladder.level[0].setting, "1000");
   assert_true(ladder.level[2].base && ladder.level[2].reference);
   assert_true(fabs(ladder.level[0].step - 0.1) < 1e-12);
-  assert_int_equal(ladder_add_own(&ladder, scene, &error), STATUS_OK);
+  OK(ladder_add_own(&ladder, scene, &error));
   assert_true(ladder.count == 3 && !ladder.level[2].unasked);
   ladder_clear(&ladder);
   free(notes);
 
   /* A study adds the scene's own level, though not to run: its error is wanted. Not so of a model. */
-  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "1000,3000", &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob_of("sph", "particles"), scene, "1000,3000", &ladder, &notes, &error));
   assert_int_equal(ladder.count, 2);
-  assert_int_equal(ladder_add_own(&ladder, scene, &error), STATUS_OK);
+  OK(ladder_add_own(&ladder, scene, &error));
   assert_true(ladder.count == 3 && ladder.level[2].base && ladder.level[2].unasked);
   assert_true(ladder.level[1].reference && !ladder.level[2].reference && !ladder.level[0].unasked);
   ladder_clear(&ladder);
   free(notes);
-  assert_int_equal(ladder_make(knob_of("sph", "smoothing"), scene, "1,2", &ladder, &notes, &error), STATUS_OK);
-  assert_int_equal(ladder_add_own(&ladder, scene, &error), STATUS_OK);
+  OK(ladder_make(knob_of("sph", "smoothing"), scene, "1,2", &ladder, &notes, &error));
+  OK(ladder_add_own(&ladder, scene, &error));
   assert_int_equal(ladder.count, 2);
   ladder_clear(&ladder);
   free(notes);
 
   /* Inputs that belong to a knob move together: halving the time step halves its other limits. */
-  assert_int_equal(ladder_make(knob_of("sph", "time_step"), scene, NULL, &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob_of("sph", "time_step"), scene, NULL, &ladder, &notes, &error));
   struct field_value own, finest;
   const struct field *row = field_find(scene->kind->inputs, "fidelity.damage_step", &error);
   field_get(row, scene->inputs, &own);
@@ -226,11 +219,11 @@ TEST(named_settings_are_levels) {
            "%.*s\nsettings:\n  reference: {grain.spacing: 8 mm}\n  finest: {grain.spacing: 6 mm}\n"
            "  draft: {grain.spacing: 15 mm, fidelity.time_step: 2 us}\n",
            (int)(own - builtin), builtin);
-  assert_int_equal(scene_parse("disc", text, &scene, &error), STATUS_OK);
+  OK(scene_parse("disc", text, &scene, &error));
   const struct knob *knob = knob_of("dem", "settings");
   struct ladder ladder;
   char *notes = NULL;
-  assert_int_equal(ladder_make(knob, scene, NULL, &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob, scene, NULL, &ladder, &notes, &error));
   static const char *const order[] = {"draft", "standard", "finest", "reference"};
   assert_int_equal(ladder.count, 4);
   for (size_t l = 0; l < 4; l++) {
@@ -244,15 +237,15 @@ TEST(named_settings_are_levels) {
   assert_string_equal(notes, "");
   ladder_clear(&ladder);
   free(notes);
-  assert_int_equal(ladder_make(knob, scene, "finest,standard", &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob, scene, "finest,standard", &ladder, &notes, &error));
   assert_string_equal(notes, "settings finest take the most work here: the others are compared with them (ref)\n");
   ladder_clear(&ladder);
   free(notes);
-  assert_int_equal(ladder_make(knob, scene, "draft,standard", &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob, scene, "draft,standard", &ladder, &notes, &error));
   assert_int_equal(ladder.count, 2);
   ladder_clear(&ladder);
   free(notes);
-  assert_int_equal(ladder_turn(knob, scene, "draft", &error), STATUS_OK);
+  OK(ladder_turn(knob, scene, "draft", &error));
   ladder_setting(knob_of("dem", "time_step"), scene, spacing, sizeof spacing);
   assert_string_equal(spacing, "2e-6");
   assert_int_equal(ladder_turn(knob, scene, "coarse", &error), STATUS_MISSING);
@@ -264,7 +257,7 @@ TEST(settings_of_another_model_are_no_levels) {
   const struct knob *knob = knob_of("sph", "settings");
   struct ladder ladder;
   char *notes = NULL;
-  assert_int_equal(ladder_make(knob, scene, NULL, &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob, scene, NULL, &ladder, &notes, &error));
   assert_int_equal(ladder.count, 3);
   for (size_t l = 0; l < 3; l++)
     assert_string_equal(ladder.level[l].setting, ((const char *[]){"draft", "standard", "reference"})[l]);
@@ -273,7 +266,7 @@ TEST(settings_of_another_model_are_no_levels) {
   assert_non_null(strstr(notes, "settings spheral are left out"));
   ladder_clear(&ladder);
   free(notes);
-  assert_int_equal(ladder_make(knob, scene, "opensph,standard", &ladder, &notes, &error), STATUS_OK);
+  OK(ladder_make(knob, scene, "opensph,standard", &ladder, &notes, &error));
   assert_int_equal(ladder.count, 2);
   ladder_clear(&ladder);
   free(notes);
@@ -293,9 +286,9 @@ TEST(findings_replace_earlier_ones) {
   char path[64];
   struct store *store = NULL;
   SCENE scene = scene_of("disc-explosion");
-  assert_int_equal(store_open_writer(fixture_path(path, "converge"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "converge"), &store, NULL, 0, &error));
   int64_t point = 0;
-  assert_int_equal(store_add_point(store, 0, scene, 0, NULL, &point, &error), STATUS_OK);
+  OK(store_add_point(store, 0, scene, 0, NULL, &point, &error));
   struct convergence_row rows[2];
   for (size_t i = 0; i < 2; i++) {
     field_defaults(&convergence_table, &rows[i]);
@@ -310,18 +303,18 @@ TEST(findings_replace_earlier_ones) {
   limit.verdict = LIMIT_NOT_SEEN;
   const int64_t points[2] = {point, point};
   struct store_convergence study = {point, 3, 2, points, rows, &limit};
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  OK(store_set_convergence(store, &study, &error));
+  OK(store_set_convergence(store, &study, &error));
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence_limit WHERE verdict = 'no-limit'"), 1);
   study.count = 1;
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  OK(store_set_convergence(store, &study, &error));
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
   strcpy(rows[0].quantity, "dust_fraction"); /* another quantity is kept beside it */
   strcpy(limit.quantity, "dust_fraction");
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  OK(store_set_convergence(store, &study, &error));
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
 
   /* A store of an earlier program has no such tables: they are made when it is opened for writing. */
   sqlite3 *db = NULL;
@@ -329,10 +322,10 @@ TEST(findings_replace_earlier_ones) {
   assert_int_equal(sqlite3_exec(db, "DROP TABLE convergence; DROP TABLE convergence_limit", NULL, NULL, NULL),
                    SQLITE_OK);
   sqlite3_close(db);
-  assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  OK(store_set_convergence(store, &study, &error));
   assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
 }
 
 /* Adds a level of a knob, which is the scene studied (`base` 0) or another point. */
@@ -348,7 +341,7 @@ static void add_level(struct store *store, int64_t base, int64_t point, const ch
   row.base = base == 0;
   limit.verdict = verdict;
   const struct store_convergence study = {base ? base : point, fixture_kind.results_version, 1, &point, &row, &limit};
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  OK(store_set_convergence(store, &study, &error));
 }
 
 /* The same by its remaining error. */
@@ -369,42 +362,42 @@ static void studied(struct store *store, int64_t point, const char *knob, double
 TEST(a_point_has_the_errors_of_its_knobs) {
   char path[64];
   struct store *store = NULL;
-  assert_int_equal(store_open_writer(fixture_path(path, "resolution"), &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "resolution"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 1, 3, false, &error));
   const int64_t point = integer(store, "SELECT min(point_id) FROM run");
   struct ask_resolution found;
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
   studied(store, point, "time_step", 0.01, false, LIMIT_SEEN);
   studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
   studied(store, point, "contact_law", NAN, false, LIMIT_TOO_FEW);
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_KNOWN);
   assert_true(fabs(found.half_width - 0.06) < 1e-12);
   assert_string_equal(found.knobs, "grains, time_step"); /* not "contact law": it has no error here */
-  assert_int_equal(ask_resolution(store, 0, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, 0, "largest_fraction", &found, &error));
   assert_true(fabs(found.half_width - 0.06) < 1e-12 && found.points == 2 && found.studied == 1);
   assert_true(fabs(number(store, "SELECT largest_fraction_resolution FROM points WHERE point_id = 1") - 0.06) < 1e-12);
   assert_int_equal(integer(store, "SELECT count(*) FROM points WHERE largest_fraction_resolution_verdict = "
                                   "'not-studied'"),
                    1);
   studied(store, point, "grains", 0.05, true, LIMIT_TOO_FEW);
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST);
   studied(store, point, "grains", 0.05, true, LIMIT_NOT_SEEN);
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_DIVERGES);
   /* Settings whose runs are all equal add nothing. When no setting moved a run, nothing else is told. */
   studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
   studied(store, point, "time_step", 0, true, LIMIT_CONSTANT);
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && found.half_width == 0.05);
   studied(store, point, "grains", 0, true, LIMIT_CONSTANT);
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_true(found.verdict == ASK_RESOLUTION_NO_DIFFERENCE && found.half_width == 0);
-  assert_int_equal(ask_resolution(store, point, "dust_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "dust_fraction", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
 }
 
 /* A level of one knob has the errors that the other knobs leave at the scene's own setting. */
@@ -412,15 +405,15 @@ TEST(a_level_has_the_errors_of_the_other_knobs) {
   char path[64];
   struct store *store = NULL;
   struct ask_resolution found;
-  assert_int_equal(store_open_writer(fixture_path(path, "level"), &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "level"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 1, 3, false, &error));
   const int64_t point = integer(store, "SELECT min(point_id) FROM run"), finer = point + 1;
   studied(store, point, "grains", 0.05, false, LIMIT_SEEN);
   level_of(store, point, finer, "time_step", 0.01, false, LIMIT_SEEN); /* the scene's own step was not run */
-  assert_int_equal(ask_resolution(store, finer, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, finer, "largest_fraction", &found, &error));
   assert_true(found.verdict == ASK_RESOLUTION_KNOWN && fabs(found.half_width - 0.06) < 1e-12);
   /* Its own error is not known, and not told as smaller than that of the level. */
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && fabs(found.half_width - 0.06) < 1e-12);
   /* The levels have the same error, as studies of other knobs change it later, too. */
   studied(store, point, "grains", 0.08, false, LIMIT_SEEN);
@@ -434,9 +427,9 @@ TEST(a_level_has_the_errors_of_the_other_knobs) {
   assert_int_equal(answer_end(&levels), STATUS_OK);
   /* No error of a share is larger than its distance from the farther end. */
   studied(store, point, "grains", 3, true, LIMIT_NOT_SEEN);
-  assert_int_equal(ask_resolution(store, finer, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, finer, "largest_fraction", &found, &error));
   assert_true(found.verdict == ASK_RESOLUTION_KNOWN && found.half_width == 1);
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
 }
 
 /* The error of a knob that has two studies: of the scene itself, 0.05 with a step of 1 and 8 seeds, and of the scene
@@ -450,7 +443,7 @@ static double error_of_two(struct store *store, int64_t point, double resolution
   row.resolution = resolution, row.step = step, row.n = seeds;
   add_level(store, 0, point + 1, "grains", &row, LIMIT_SEEN);
   level_of(store, point + 1, point, "time_step", 0.01, false, LIMIT_SEEN);
-  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
   return found.half_width - 0.01;
 }
 
@@ -459,8 +452,8 @@ static double error_of_two(struct store *store, int64_t point, double resolution
 TEST(a_finer_study_replaces_a_coarser_one) {
   char path[64];
   struct store *store = NULL;
-  assert_int_equal(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 1, 3, false, &error));
   const int64_t point = integer(store, "SELECT min(point_id) FROM run");
   assert_true(fabs(error_of_two(store, point, 0.02, 0.5, 8) - 0.02) < 1e-12);
   assert_true(fabs(error_of_two(store, point, 0.07, 0.5, 8) - 0.07) < 1e-12);
@@ -468,7 +461,7 @@ TEST(a_finer_study_replaces_a_coarser_one) {
   assert_true(fabs(error_of_two(store, point, 0.02, 1, 8) - 0.05) < 1e-12);
   assert_true(fabs(error_of_two(store, point, 0.07, 1, 8) - 0.07) < 1e-12);
   assert_true(fabs(error_of_two(store, point, 0.07, 2, 32) - 0.05) < 1e-12); /* coarser */
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
 }
 
 /* The reference if it was run, else the finest level that was. */

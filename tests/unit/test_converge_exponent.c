@@ -7,7 +7,6 @@
 
 enum { SEEDS = 8, FRAGMENTS = 60, LEVELS = 2 };
 static const double coarse_beta = 2.0, fine_beta = 2.3;
-static struct error error;
 
 static struct fragment fragment_of(double mass) {
   return (struct fragment){.mass = mass, .count = (uint32_t)lround(mass)};
@@ -29,7 +28,7 @@ static void add_run(struct store *store, int64_t session, int64_t point, const s
   }
   qsort(fragments, FRAGMENTS, sizeof fragments[0], fixture_by_mass);
   outcome.largest_fraction = fragments[0].mass / outcome.total_mass;
-  assert_int_equal(estimates_make(FRAGMENTS, fragments, NAN, estimates, &error), STATUS_OK);
+  OK(estimates_make(FRAGMENTS, fragments, NAN, estimates, &error));
   struct store_run run = {.point_id = point,
                           .session_id = session,
                           .replicate = (int64_t)seed - 1,
@@ -46,7 +45,7 @@ static void add_run(struct store *store, int64_t session, int64_t point, const s
                           .attempt = 1,
                           .host = "testhost"};
   scene_identity(scene, seed, run.identity);
-  assert_int_equal(store_add_run(store, &run, &error), STATUS_OK);
+  OK(store_add_run(store, &run, &error));
 }
 
 /* A study of two time steps, whose runs have exponents that differ by 0.3. Seeds begin at 1; `missing` has no run. */
@@ -65,26 +64,26 @@ static void set_up_levels(struct fixture *f, const char *file, const char *quant
   int64_t session = 0;
   *f = (struct fixture){.study = {.quantity_count = 1, .limits = {.first_seed = 1}}};
   f->study.rule = (struct study_rule){.within = NAN, .first_seeds = SEEDS, .most_seeds = SEEDS, .seconds = HUGE_VAL};
-  assert_int_equal(store_open_writer(fixture_path(path, file), &f->store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(scene_load("disc-explosion", NULL, &f->scene, &error), STATUS_OK);
-  assert_int_equal(study_quantity_find(f->scene->kind, quantity, &f->study.quantity[0], &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, file), &f->store, NULL, 0, &error));
+  OK(scene_load("disc-explosion", NULL, &f->scene, &error));
+  OK(study_quantity_find(f->scene->kind, quantity, &f->study.quantity[0], &error));
   assert_int_equal(ladder_make(engine_knob(f->scene->kind, "time_step", &error), f->scene, settings, &levels, &notes,
                                &error),
                    STATUS_OK);
-  assert_int_equal(study_add(&f->study, f->scene, &levels, &error), STATUS_OK);
+  OK(study_add(&f->study, f->scene, &levels, &error));
   f->ladder = &f->study.ladder[0];
   f->ladder->seeds = SEEDS;
-  assert_int_equal(store_begin_session(f->store, "{\"version\":\"test\"}", &session, &error), STATUS_OK);
+  OK(store_begin_session(f->store, "{\"version\":\"test\"}", &session, &error));
   for (size_t l = 0; l < f->ladder->levels.count; l++) {
     const struct scene *scene = f->ladder->levels.level[l].scene;
     int64_t point = 0;
-    assert_int_equal(store_add_point(f->store, 0, scene, 0, NULL, &point, &error), STATUS_OK);
+    OK(store_add_point(f->store, 0, scene, 0, NULL, &point, &error));
     for (uint64_t seed = 1; seed <= SEEDS; seed++)
       if (seed != missing && l < LEVELS)
         add_run(f->store, session, point, scene, seed, l ? fine_beta : coarse_beta);
   }
-  assert_int_equal(store_flush(f->store, &error), STATUS_OK);
-  assert_int_equal(study_read(&f->study, f->ladder, f->store, &error), STATUS_OK);
+  OK(store_flush(f->store, &error));
+  OK(study_read(&f->study, f->ladder, f->store, &error));
 }
 
 static void set_up(struct fixture *f, const char *file, const char *quantity, uint64_t missing) {
@@ -94,7 +93,7 @@ static void set_up(struct fixture *f, const char *file, const char *quantity, ui
 static void tear_down(struct fixture *f) {
   study_clear(&f->study);
   scene_free(f->scene);
-  assert_int_equal(store_close(f->store, &error), STATUS_OK);
+  OK(store_close(f->store, &error));
 }
 
 TEST(levels_have_the_pooled_exponent) {
@@ -134,8 +133,7 @@ static double exponent_of(const struct point_data *point, size_t n, const uint32
   }
   const struct pooled_runs runs = {n, first, masses};
   struct pooled_exponent fit;
-  assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, point_window(point, ESTIMATES_FROM_5), 0.95, &fit, &error),
-                   STATUS_OK);
+  OK(pooled_exponent(&runs, EXPONENT_MASSES, point_window(point, ESTIMATES_FROM_5), 0.95, &fit, &error));
   return fit.fit.beta;
 }
 
@@ -156,7 +154,7 @@ TEST(the_bias_is_found) {
   assert_true(row->base && row->paired && found.rows[1].reference);
   assert_true(row->bias + row->bias_half_width < 0); /* and it is not zero */
   for (size_t l = 0; l < LEVELS; l++)
-    assert_int_equal(point_read(f.store, f.ladder->point[l], 0, &pair.point[l], &error), STATUS_OK);
+    OK(point_read(f.store, f.ladder->point[l], 0, &pair.point[l], &error));
   const struct sample_interval want = sample_jackknife(SEEDS, 0.95, difference_of, &pair);
   assert_near(row->bias, want.estimate, 1e-9);
   assert_near(row->bias_half_width, want.half_width, 1e-9);
@@ -170,16 +168,16 @@ TEST(the_store_has_the_second_error) {
   struct fixture f;
   struct ask_resolution found;
   set_up(&f, "exponent-store", "beta", 0);
-  assert_int_equal(ask_resolution(f.store, f.ladder->point[0], "beta", &found, &error), STATUS_OK);
+  OK(ask_resolution(f.store, f.ladder->point[0], "beta", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
-  assert_int_equal(study_store(&f.study, f.store, &error), STATUS_OK);
+  OK(study_store(&f.study, f.store, &error));
   static const char *const names[] = {"beta", "beta_masses_from_5"};
   for (size_t i = 0; i < 2; i++) {
-    assert_int_equal(ask_resolution(f.store, f.ladder->point[0], names[i], &found, &error), STATUS_OK);
+    OK(ask_resolution(f.store, f.ladder->point[0], names[i], &found, &error));
     assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST); /* two levels do not determine a limit */
     assert_true(found.half_width > fine_beta - coarse_beta - 0.1);
   }
-  assert_int_equal(ask_resolution(f.store, f.ladder->point[0], "beta_masses_from_2", &found, &error), STATUS_OK);
+  OK(ask_resolution(f.store, f.ladder->point[0], "beta_masses_from_2", &found, &error));
   assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
   tear_down(&f);
 }
@@ -202,7 +200,7 @@ TEST(one_seed_tells_nothing) {
   struct study_found found;
   set_up(&f, "exponent-one", "beta", 0);
   f.ladder->seeds = 1;
-  assert_int_equal(study_read(&f.study, f.ladder, f.store, &error), STATUS_OK);
+  OK(study_read(&f.study, f.ladder, f.store, &error));
   study_find(&f.study, f.ladder, 0, &found);
   assert_true(isnan(found.rows[0].mean) && isnan(found.rows[0].bias));
   assert_true(f.ladder->ran[0][0]); /* but its run is known */
@@ -218,7 +216,7 @@ TEST(a_level_beyond_the_finest_is_there_once) {
     for (size_t s = 0; s < SEEDS; s++)
       f.ladder->values[0][l][s] = l == 3 ? (double)NAN : 0.3 + 0.1 * pow(0.5, (double)l) + 1e-4 * (double)(s * l % 3);
   f.ladder->left_out[3] = true;
-  assert_int_equal(study_store(&f.study, f.store, &error), STATUS_OK);
+  OK(study_store(&f.study, f.store, &error));
   assert_int_equal(answer_number(f.store, &count, &error, "SELECT count(*) FROM convergence"), STATUS_OK);
   assert_int_equal(answer_number(f.store, &settings, &error, "SELECT count(DISTINCT setting + 0) FROM convergence"),
                    STATUS_OK);

@@ -1,5 +1,4 @@
 /* Known answers of the statistics of a convergence study: bias, break-even, gain, frontier. */
-#include <math.h>
 
 #include "analysis/statistics/convergence.h"
 #include "tests/support/check.h"
@@ -52,9 +51,9 @@ TEST(correlations) {
 }
 
 TEST(frontiers) {
-  const double cost[6] = {1, 2, 3, 4, 2, 0.5}, error[6] = {5, 3, 3, 1, 4, NAN};
+  const double cost[6] = {1, 2, 3, 4, 2, 0.5}, errors[6] = {5, 3, 3, 1, 4, NAN};
   bool on[6];
-  convergence_frontier(6, cost, error, on);
+  convergence_frontier(6, cost, errors, on);
   assert_true(on[0] && on[1] && !on[2] && on[3] && !on[4] && !on[5]);
 }
 

@@ -1,7 +1,4 @@
 /* Cost of runs: the remaining time of a campaign, and the time of a whole run predicted from a coarse one. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "campaign/scheduler/point.h"
 #include "campaign/scheduler/scheduler.h"
@@ -75,20 +72,19 @@ TEST(whole_runs) {
  * Time is counted in steps: a step counts as a second. */
 TEST(a_run_told_by_its_beginning) {
   struct scene *scene = NULL, *coarse = NULL;
-  struct error error = {0};
   char setting[64];
   OWNED struct plan_trial *run = calloc(2, sizeof *run);
   assert_non_null(run);
-  assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "body.diameter", "0.2 m", &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "charge.energy", "1e4 J/m", &error), STATUS_OK);
-  assert_int_equal(plan_try(scene, 1, 1000, &run[0], &error), STATUS_OK);
+  OK(scene_load("disc-explosion", NULL, &scene, &error));
+  OK(scene_set_text(scene, "body.diameter", "0.2 m", &error));
+  OK(scene_set_text(scene, "charge.energy", "1e4 J/m", &error));
+  OK(plan_try(scene, 1, 1000, &run[0], &error));
   assert_true(run[0].finished);
   const double work = scene->kind->work(scene->inputs);
   plan_coarsen(scene, 1 / work, 1.0 / 3, &coarse, setting);
   assert_non_null(coarse);
   assert_true(coarse->kind->work(coarse->inputs) < work / 2);
-  assert_int_equal(plan_try(coarse, 1, 1000, &run[1], &error), STATUS_OK);
+  OK(plan_try(coarse, 1, 1000, &run[1], &error));
 
   const double whole = run[0].steps;
   size_t place = 0;
@@ -108,8 +104,7 @@ TEST(keys_of_a_plan) {
   static const char
       text[] = "name: keys\nscene: disc-explosion\nvary: {threshold.strain: [1 %, 2 %], contact.law: [off]}\n";
   CAMPAIGN campaign = NULL;
-  struct error error = {0};
-  assert_int_equal(campaign_parse("keys.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_OK);
+  OK(campaign_parse("keys.yaml", text, strlen(text), NULL, &campaign, &error));
   struct plan plan = {.store = "other.db",
                       .points = 1,
                       .points_looked_at = 2,
@@ -174,14 +169,13 @@ TEST(threads_share_the_time) {
                "seeds: {per_point: 1}\n";
   CAMPAIGN campaign = NULL;
   OWNED_BY(plan_clear) struct plan plan;
-  struct error error = {0};
   FILE *file = fopen("threads.yaml", "w");
   assert_non_null(file);
   assert_true(fputs(text, file) >= 0);
   assert_int_equal(fclose(file), 0);
-  assert_int_equal(campaign_load("threads.yaml", &campaign, &error), STATUS_OK);
+  OK(campaign_load("threads.yaml", &campaign, &error));
   const struct plan_options options = {.store_path = "no-such-store.db", .slots = 1};
-  assert_int_equal(plan_make(campaign, &options, &plan, &error), STATUS_OK);
+  OK(plan_make(campaign, &options, &plan, &error));
   NEAR(plan.threads, 2, 0);
   assert_true(plan.wall_s_least > 0.49 * plan.cpu_s_least && plan.wall_s_least < 0.6 * plan.cpu_s_least);
   remove("threads.yaml");

@@ -1,5 +1,4 @@
 /* The crossing of a level: likelihoods, intervals and next places by hand, and every kind of answer. */
-#include <math.h>
 
 #include "analysis/analysis.h"
 #include "analysis/inference/crossing.h"
@@ -8,10 +7,9 @@
 #define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static struct crossing find(size_t n, const double *x, const double *y, double level, double share) {
-  struct error error;
   struct crossing found;
   const struct crossing_data data = {.n = n, .x = x, .y = y, .level = level, .share = share};
-  assert_int_equal(crossing_find(&data, &found, &error), STATUS_OK);
+  OK(crossing_find(&data, &found, &error));
   return found;
 }
 
@@ -130,7 +128,6 @@ TEST(plateau_of_few_places) {
 }
 
 TEST(runs_without_results) {
-  struct error error;
   struct crossing found;
   const double x[4] = {0, 1, 1, 1}, y[4] = {1, NAN, NAN, HUGE_VAL};
   const struct crossing_data data = {.n = 4, .x = x, .y = y, .level = 0, .share = NAN};

@@ -31,7 +31,6 @@ TEST(tables_are_whole) {
   field_defaults(&dem_inputs, &inputs);
   for (size_t i = 0; i < dem_inputs.count; i++) { /* every default is in its own range */
     struct field_value value;
-    struct error error = {0};
     field_get(&dem_inputs.rows[i], &inputs, &value);
     if (!(dem_inputs.rows[i].flags & FIELD_MAY_BE_OFF && field_is_off(value.number)) &&
         field_set(&dem_inputs.rows[i], &inputs, &value, &error))
@@ -48,9 +47,8 @@ TEST(builtin_scenes_say_what_they_model) {
     assert_non_null(strstr(text, scenes[k]));
     assert_non_null(strstr(text, "stability limit"));
     assert_null(strstr(text, "cannot be run"));
-    struct error error = {0};
     void *run;
-    assert_int_equal(dem_engine.prepare(&inputs, 1, &run, &error), STATUS_OK);
+    OK(dem_engine.prepare(&inputs, 1, &run, &error));
     size_t bytes = dem_system_arrays_bytes(((struct dem_run *)run)->system);
     if (!(bytes < dem_engine.memory(&inputs)))
       fail_msg("%s: %zu bytes promised, the system alone has %zu", scenes[k], dem_engine.memory(&inputs), bytes);
@@ -74,9 +72,7 @@ TEST(explosion_starts_as_the_paper_says) {
   }
   for (uint64_t seed = 0; seed < 20; seed++) {
     struct dem_run *run;
-    struct error error = {0};
-    if (dem_run_create(&inputs, seed, &run, &error))
-      fail_msg("%s", error.message);
+    OK(dem_run_create(&inputs, seed, &run, &error));
     double momentum[2], magnitude, speed = 0;
     dem_run_momentum(run, momentum, &magnitude);
     assert_true(magnitude > 0);
@@ -186,7 +182,6 @@ TEST(rings_collide) {
 }
 
 static void refuse(struct dem_inputs inputs, const char *word) {
-  struct error error = {0};
   void *run = &run;
   assert_int_equal(dem_engine.prepare(&inputs, 1, &run, &error), STATUS_CONTENT);
   assert_null(run);
@@ -224,9 +219,8 @@ TEST(what_cannot_run_is_refused) {
   inputs.stop.end_time = 1e-9;
   refuse(inputs, "first time step");
   SCENE scene = NULL;
-  struct error error = {0};
-  assert_int_equal(scene_load("block-impact", NULL, &scene, &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "charge.energy", "1 J/m", &error), STATUS_OK);
+  OK(scene_load("block-impact", NULL, &scene, &error));
+  OK(scene_set_text(scene, "charge.energy", "1 J/m", &error));
   assert_int_equal(scene_check(scene, &error), STATUS_CONTENT); /* an input without effect here */
   assert_non_null(strstr(error.message, "charge.energy"));
 }
@@ -241,8 +235,7 @@ TEST(the_estimated_step_is_that_of_the_least_stable_body) {
     double least = HUGE_VAL;
     for (uint64_t seed = 1; seed <= 20; seed++) {
       struct dem_run *run;
-      struct error error = {0};
-      assert_int_equal(dem_run_create(&inputs, seed, &run, &error), STATUS_OK);
+      OK(dem_run_create(&inputs, seed, &run, &error));
       least = fmin(least, run->stable_time_step / dem_describe_stable_step(&inputs));
       dem_run_free(run);
     }
@@ -257,13 +250,12 @@ TEST(the_longest_step_is_the_systems) {
   for (int i = 0; i < 2; i++) {
     struct dem_inputs inputs = DEM_CASE("uniaxial", integrators[i]);
     struct dem_run *run;
-    struct error error = {0};
-    assert_int_equal(dem_run_create(&inputs, 1, &run, &error), STATUS_OK);
+    OK(dem_run_create(&inputs, 1, &run, &error));
     const double longest = run->stable_time_step;
     assert_true(fabs(dem_system_stable_time_step(run->system) / longest - 1) < 1e-7);
     dem_run_free(run);
     inputs.fidelity.time_step = longest;
-    assert_int_equal(dem_run_create(&inputs, 1, &run, &error), STATUS_OK);
+    OK(dem_run_create(&inputs, 1, &run, &error));
     dem_run_free(run);
     inputs.fidelity.time_step = nextafter(longest, 1);
     refuse(inputs, "unstable above");
@@ -521,13 +513,12 @@ TEST(the_step_follows_from_the_contact_law) {
   static const char *const laws[] = {"conservative", "printed", "off"};
   for (size_t k = 0; k < 3; k++) {
     SCENE scene = NULL;
-    struct error error;
-    assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
-    assert_int_equal(scene_set_text(scene, "contact.law", laws[k], &error), STATUS_OK);
-    assert_int_equal(scene_check(scene, &error), STATUS_OK);
+    OK(scene_load("disc-explosion", NULL, &scene, &error));
+    OK(scene_set_text(scene, "contact.law", laws[k], &error));
+    OK(scene_check(scene, &error));
     const struct dem_inputs *in = scene->inputs;
     assert_true(in->fidelity.time_step == (k == 1 ? 0.5e-6 : 1e-6));
-    assert_int_equal(scene_set_text(scene, "fidelity.time_step", "2 us", &error), STATUS_OK);
+    OK(scene_set_text(scene, "fidelity.time_step", "2 us", &error));
     assert_true(fabs(in->fidelity.time_step - 2e-6) < 1e-20);
   }
 }

@@ -31,13 +31,11 @@ TEST(fields_describe_themselves) {
                                          "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
   for (int c = 0; c < 2; c++) {
     void *run;
-    struct error error = {0};
     char path[200];
     snprintf(path, sizeof path, "%s", in_folder("fields.hdf"));
     assert_int_equal(dem_engine.prepare(&cases[c], 5, &run, NULL), STATUS_OK);
     struct ran ran = run_case_end(&dem_engine, run, 1000);
-    if (dem_engine.write_snapshot(run, path, &error))
-      fail_msg("%s", error.message);
+    OK(dem_engine.write_snapshot(run, path, &error));
     size_t n = ((struct dem_run *)run)->tessellation->cell_count,
            beams = ((struct dem_run *)run)->tessellation->pair_count;
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);

@@ -1,8 +1,5 @@
 /* Quotients without the divider against divisions, bit by bit: lanes.h, class v4. */
 #define CHECK_OWN_MAIN
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
 
 #include "engine/cpu_class.h"
 

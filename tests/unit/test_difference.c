@@ -1,5 +1,4 @@
 /* Differences of means against values computed by hand and by numerical integration of Student's density. */
-#include <math.h>
 
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"

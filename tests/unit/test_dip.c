@@ -1,6 +1,4 @@
 /* The dip of samples with known dips, and how often chance makes a dip. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"

@@ -374,17 +374,13 @@ TEST(trees_are_walked) {
 TEST(values_are_put) {
   static const char text[] = "# a comment\nbody: {length: 2 m, count: 5}\nname: 'a: b'\nset:\n  x: [1 %, off]\n";
   struct document *document = NULL, *again = NULL;
-  struct error error = {0};
   const char *report = NULL;
-  assert_int_equal(document_parse("a.yaml", text, strlen(text), &document, &error), STATUS_OK);
+  OK(document_parse("a.yaml", text, strlen(text), &document, &error));
   OWNED char *unchanged = document_change_text(document);
   assert_string_equal(unchanged, text);
-  assert_int_equal(document_change_put(document, (const char *const[]){"body", "count"}, "6", "command line", &error),
-                   STATUS_OK);
-  assert_int_equal(document_change_put(document, (const char *const[]){"set", "y.z"}, "#3", "command line", &error),
-                   STATUS_OK);
-  assert_int_equal(document_change_put(document, (const char *const[]){"new", "a"}, "5 km/s", "command line", &error),
-                   STATUS_OK);
+  OK(document_change_put(document, (const char *const[]){"body", "count"}, "6", "command line", &error));
+  OK(document_change_put(document, (const char *const[]){"set", "y.z"}, "#3", "command line", &error));
+  OK(document_change_put(document, (const char *const[]){"new", "a"}, "5 km/s", "command line", &error));
   assert_int_equal(document_change_put(document, (const char *const[]){"name", "a"}, "1", "command line", &error),
                    STATUS_CONTENT);
   assert_string_equal(document_scalar(document_key(document_key(document_root(document), "body"), "count")), "6");
@@ -392,7 +388,7 @@ TEST(values_are_put) {
   assert_string_equal(changed, "# as read, with values of the command line; comments are left out\n"
                                "body: {length: 2 m, count: 6}\nname: \"a: b\"\nset: {x: [1 %, off], y.z: \"#3\"}\n"
                                "new: {a: 5 km/s}\n");
-  assert_int_equal(document_parse("b.yaml", changed, strlen(changed), &again, &error), STATUS_OK);
+  OK(document_parse("b.yaml", changed, strlen(changed), &again, &error));
   assert_string_equal(document_scalar(document_key(document_key(document_root(again), "set"), "y.z")), "#3");
   document_free(again);
   /* an error about such a value names the command line instead of a place in the file, and is a usage error */

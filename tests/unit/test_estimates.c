@@ -1,6 +1,4 @@
 /* The standard rows of a run: windows in mean grain masses, dust and the largest left out, one headline. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"
@@ -151,7 +149,6 @@ TEST(bad_windows_are_refused) {
   double masses[5] = {1, 2, 3, 4, 5};
   const struct exponent_window windows[] = {{0, 1}, {-1, 1}, {2, 2}, {3, 2}, {NAN, 2}, {1, NAN}, {HUGE_VAL, HUGE_VAL}};
   struct exponent fit;
-  struct error error;
   for (size_t w = 0; w < sizeof windows / sizeof *windows; w++)
     assert_int_equal(exponent_fit(EXPONENT_MASSES, 5, masses, windows[w], &fit, &error), STATUS_USAGE);
   assert_int_equal(exponent_fit((enum exponent_method)17, 5, masses, (struct exponent_window){1, 2}, &fit, &error),

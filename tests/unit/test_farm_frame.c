@@ -1,7 +1,5 @@
 /* Frames: complete ones are received unchanged however the stream is cut; incomplete and foreign bytes are detected.
  * Jobs: handles. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "campaign/farm/farm_private.h"
 #include "tests/support/check.h"

@@ -12,16 +12,14 @@
 
 static struct farm *start(struct farm_options options) {
   struct farm *farm = NULL;
-  struct error error = {0};
-  if (farm_start(&options, task_work, &farm, &error) != STATUS_OK)
-    fail_msg("%s", error.message);
+  OK(farm_start(&options, task_work, &farm, &error));
   return farm;
 }
 
-static status run_list(struct farm_options options, struct task_list *list, struct error *error) {
+static status run_list(struct farm_options options, struct task_list *list, struct error *e) {
   struct farm *farm = start(options);
   const struct farm_manager manager = task_list_manager(list);
-  const status result = farm_run(farm, &manager, error);
+  const status result = farm_run(farm, &manager, e);
   farm_stop(farm);
   return result;
 }
@@ -39,9 +37,8 @@ TEST(same_answers_whatever_the_slots) {
   for (int mode = 0; mode < 2; mode++) {
     for (int slots = 1; slots <= 5; slots += 2) {
       OWNED_BY(task_list_free) struct task_list list;
-      struct error error = {0};
       task_list_new(&list, 500);
-      assert_int_equal(run_list((struct farm_options){.slots = slots, .in_process = mode}, &list, &error), STATUS_OK);
+      OK(run_list((struct farm_options){.slots = slots, .in_process = mode}, &list, &error));
       assert_each_once(&list);
       assert_true(list.sum == expected);
     }
@@ -51,9 +48,8 @@ TEST(same_answers_whatever_the_slots) {
 TEST(no_tasks_and_fewer_than_slots) {
   for (size_t count = 0; count < 3; count++) {
     OWNED_BY(task_list_free) struct task_list list;
-    struct error error = {0};
     task_list_new(&list, count);
-    assert_int_equal(run_list((struct farm_options){.slots = 4}, &list, &error), STATUS_OK);
+    OK(run_list((struct farm_options){.slots = 4}, &list, &error));
     assert_each_once(&list);
   }
 }
@@ -62,7 +58,6 @@ TEST(every_ending) {
   const double limit_s = 2; /* much longer than the end of a process under sanitizers, which looks for leaks */
   for (int mode = 0; mode < 2; mode++) {
     OWNED_BY(task_list_free) struct task_list list;
-    struct error error = {0};
     task_list_new(&list, 40);
     list.tasks[3].kind = TASK_SEGV;
     list.tasks[7].kind = TASK_ABORT;
@@ -78,7 +73,7 @@ TEST(every_ending) {
                                          .in_process = mode,
                                          .time_limit_s = limit_s,
                                          .memory_limit = (size_t)1 << 27};
-    assert_int_equal(run_list(options, &list, &error), STATUS_OK);
+    OK(run_list(options, &list, &error));
     assert_each_once(&list);
     assert_int_equal(list.endings[3], FARM_CRASHED);
     assert_int_equal(list.signals[3], SIGSEGV);
@@ -108,11 +103,10 @@ TEST(every_ending) {
 TEST(large_results) {
   for (int mode = 0; mode < 2; mode++) {
     OWNED_BY(task_list_free) struct task_list list;
-    struct error error = {0};
     task_list_new(&list, 40);
     for (size_t i = 0; i < list.count; i++)
       list.tasks[i] = (struct task){.id = i, .kind = TASK_BIG, .amount = i == 5 ? 2e7 : (double)(i * i * 977)};
-    assert_int_equal(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error), STATUS_OK);
+    OK(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error));
     assert_each_once(&list);
     for (size_t i = 0; i < list.count; i++)
       assert_int_equal(list.endings[i], FARM_DONE);
@@ -123,12 +117,11 @@ TEST(large_results) {
 TEST(costs_are_the_tasks_own) {
   for (int mode = 0; mode < 2; mode++) {
     OWNED_BY(task_list_free) struct task_list list;
-    struct error error = {0};
     task_list_new(&list, 3);
     list.tasks[0] = (struct task){.id = 0, .kind = TASK_ALLOC, .amount = 1e8};
     list.tasks[1] = (struct task){.id = 1, .kind = TASK_BURN, .amount = 0.1};
     list.tasks[2] = (struct task){.id = 2, .kind = TASK_SLEEP, .amount = 0.1};
-    assert_int_equal(run_list((struct farm_options){.slots = 1, .in_process = mode}, &list, &error), STATUS_OK);
+    OK(run_list((struct farm_options){.slots = 1, .in_process = mode}, &list, &error));
     assert_each_once(&list);
     assert_true(list.peaks[0] > 90000000);
 #ifndef __SANITIZE_ADDRESS__               /* its quarantine keeps freed memory */
@@ -145,7 +138,6 @@ TEST(the_caller_can_stop) {
   for (int reason = 0; reason < 2; reason++) {
     for (int mode = 0; mode < 2; mode++) {
       OWNED_BY(task_list_free) struct task_list list;
-      struct error error = {0};
       task_list_new(&list, 1000);
       for (size_t i = 0; i < list.count; i++)
         list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = 0.002};
@@ -168,11 +160,10 @@ TEST(runs_again_after_a_run) {
   struct farm *farm = start((struct farm_options){.slots = 2});
   for (int round = 0; round < 3; round++) {
     OWNED_BY(task_list_free) struct task_list list;
-    struct error error = {0};
     task_list_new(&list, 50);
     list.tasks[10].kind = TASK_SEGV;
     const struct farm_manager manager = task_list_manager(&list);
-    assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+    OK(farm_run(farm, &manager, &error));
     assert_each_once(&list);
   }
   farm_stop(farm);
@@ -182,12 +173,11 @@ TEST(runs_again_after_a_run) {
 TEST(nobody_waits_behind_a_long_task) {
   for (int mode = 0; mode < 2; mode++) {
     OWNED_BY(task_list_free) struct task_list list;
-    struct error error = {0};
     task_list_new(&list, 6);
     for (size_t i = 0; i < list.count; i++)
       list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = i == 0 ? 1.0 : 0.02};
     const int64_t start_ns = clock_ns();
-    assert_int_equal(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error), STATUS_OK);
+    OK(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error));
     const double wall = 1e-9 * (double)(clock_ns() - start_ns);
     assert_each_once(&list);
     for (size_t i = 1; i < list.count; i++)
@@ -198,12 +188,11 @@ TEST(nobody_waits_behind_a_long_task) {
 
 static _Atomic int *times_computed; /* set before the slots are forked, shared with them */
 
-static status counting_work(const uint8_t *bytes, size_t size, uint8_t **result, size_t *result_size,
-                            struct error *error) {
+static status counting_work(const uint8_t *bytes, size_t size, uint8_t **result, size_t *result_size, struct error *e) {
   struct task task;
   memcpy(&task, bytes, sizeof task);
   times_computed[task.id]++;
-  return task_work(bytes, size, result, result_size, error);
+  return task_work(bytes, size, result, result_size, e);
 }
 
 /* A task taken back from a busy slot and run elsewhere stays in that slot's channel: the slot must skip it. */
@@ -212,15 +201,13 @@ TEST(computed_once_though_taken_back) {
     times_computed = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     assert_true(times_computed != MAP_FAILED);
     struct farm *farm = NULL;
-    struct error error = {0};
-    assert_int_equal(farm_start(&(struct farm_options){.slots = 2, .in_process = mode}, counting_work, &farm, &error),
-                     STATUS_OK);
+    OK(farm_start(&(struct farm_options){.slots = 2, .in_process = mode}, counting_work, &farm, &error));
     struct task_list list;
     task_list_new(&list, 6);
     for (size_t i = 0; i < list.count; i++)
       list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = i == 0 ? 0.3 : 0.01};
     const struct farm_manager manager = task_list_manager(&list);
-    assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+    OK(farm_run(farm, &manager, &error));
     task_sleep(0.2); /* the slot reads the rest of its channel */
     farm_stop(farm);
     assert_each_once(&list);
@@ -251,12 +238,11 @@ TEST(leaks_nothing) {
     int files[4];
     for (int round = 0; round < 4; round++) { /* the first fills what stays allocated, the others must not add */
       struct task_list list;
-      struct error error = {0};
       task_list_new(&list, count);
       for (size_t i = 0; i < count; i += 500)
         list.tasks[i].kind = TASK_SEGV;
       const struct farm_manager manager = task_list_manager(&list);
-      assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+      OK(farm_run(farm, &manager, &error));
       assert_each_once(&list);
       files[round] = open_files();
       task_list_free(&list);
@@ -275,7 +261,6 @@ TEST(leaks_nothing) {
 
 TEST(asleep_while_tasks_sleep) {
   OWNED_BY(task_list_free) struct task_list list;
-  struct error error = {0};
   task_list_new(&list, 2);
   for (size_t i = 0; i < 2; i++)
     list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = 2};
@@ -283,7 +268,7 @@ TEST(asleep_while_tasks_sleep) {
   const struct farm_manager manager = task_list_manager(&list);
   struct rusage before, after;
   getrusage(RUSAGE_SELF, &before);
-  assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+  OK(farm_run(farm, &manager, &error));
   getrusage(RUSAGE_SELF, &after);
   const struct farm_usage usage = farm_usage(farm);
   farm_stop(farm);

@@ -1,7 +1,4 @@
 /* Union-find against a flood fill on random graphs; the mechanics of a fragment against explicit sums. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/fragments.h"
 #include "engine/outcome.h"

@@ -1,6 +1,5 @@
 /* Growing arrays: their contents stay, they double, and one large request is met in one step. Aligned ones keep only as
  * many elements as the caller names. */
-#include <stdlib.h>
 
 #include "engine/grow.h"
 #include "tests/support/check.h"

@@ -11,13 +11,12 @@ TEST(kalman_gives_the_posterior_of_a_linear_model) {
   static double z[MEMBERS * 2], g[MEMBERS];
   const double y = 1.5, gamma = 0.25;
   struct ensemble_kalman e = {.members = MEMBERS, .inputs = 2, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
-  struct error error;
   for (size_t i = 0; i < 2 * MEMBERS; i++)
     z[i] = case_normal(1, i, 0);
   for (e.seed = 1; e.tempered < 1; e.round++) {
     for (size_t j = 0; j < MEMBERS; j++)
       g[j] = 2 * z[2 * j] - z[2 * j + 1];
-    assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+    OK(ensemble_kalman_step(&e, &error));
     assert_true(e.round < 10);
   }
   double mean[2] = {0}, square[2] = {0};
@@ -36,16 +35,15 @@ TEST(kalman_gives_the_posterior_of_a_linear_model) {
 TEST(kalman_replaces_failed_members) {
   double z[6] = {-1, 0, 1, 9, 9, 9}, g[6] = {-1, 0, 1, NAN, NAN, NAN}, y = 0, gamma = 1;
   struct ensemble_kalman e = {.members = 6, .inputs = 1, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
-  struct error error;
-  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+  OK(ensemble_kalman_step(&e, &error));
   for (size_t j = 3; j < 6; j++)
     assert_true(fabs(z[j]) < 4);
   double far[3] = {90, 100, 110}; /* when few rounds are left, the data are taken in larger parts */
   e = (struct ensemble_kalman){.members = 3, .inputs = 1, .outputs = 1, .z = z, .g = far, .y = &y, .gamma = &gamma};
-  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+  OK(ensemble_kalman_step(&e, &error));
   assert_true(e.tempered < 0.01);
   e.least = 0.5;
-  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+  OK(ensemble_kalman_step(&e, &error));
   assert_true(e.tempered >= 0.5 && e.tempered < 0.51);
   e = (struct ensemble_kalman){.members = 6, .inputs = 1, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
   g[1] = NAN;
@@ -78,15 +76,14 @@ static struct seed_scatter_runs sample(struct sampled *s, uint64_t seed, double 
 TEST(scatter_of_seeds_is_recovered) {
   static struct sampled s;
   struct seed_scatter fit;
-  struct error error;
   double constant = 0, slope = 0, shared = 0, apart = 0;
   enum { TIMES = 40 };
   for (uint64_t t = 0; t < TIMES; t++) {
     struct seed_scatter_runs runs = sample(&s, t, 1.2, 0.6);
-    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    OK(seed_scatter_fit(&runs, true, &fit, &error));
     shared += fit.shared / TIMES;
     runs = sample(&s, 500 + t, 1.2, 0);
-    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    OK(seed_scatter_fit(&runs, true, &fit, &error));
     apart += fit.shared / TIMES;
     constant += fit.constant / TIMES;
     slope += fit.slope[0] / TIMES;
@@ -105,7 +102,6 @@ TEST(scatter_of_seeds_is_recovered) {
 TEST(equal_counts_are_no_certainty) {
   static struct sampled s;
   struct seed_scatter fit;
-  struct error error;
   double most = 0;
   enum { THREE = 3, TIMES = 40 };
   for (uint64_t t = 0; t < TIMES; t++) {
@@ -119,7 +115,7 @@ TEST(equal_counts_are_no_certainty) {
                                            .replicates = THREE,
                                            .x = s.x,
                                            .values = s.values};
-    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    OK(seed_scatter_fit(&runs, true, &fit, &error));
     for (int k = -1; k <= 1; k++) {
       const double x = k, p = 0.5 * erfc((0.5 - 0.4 * x) / sqrt(2)), variance = seed_scatter_variance(&fit, &x);
       most = fmax(most, fabs(log(variance / (p * (1 - p)))));
@@ -133,7 +129,6 @@ TEST(equal_counts_are_no_certainty) {
 TEST(equal_runs_do_not_hide_the_scatter_of_others) {
   static struct sampled s;
   struct seed_scatter fit;
-  struct error error;
   const double there = -0.5, end = -1.5;
   enum { THREE = 3, TIMES = 40 };
   for (uint64_t t = 0; t < TIMES; t++) {
@@ -148,7 +143,7 @@ TEST(equal_runs_do_not_hide_the_scatter_of_others) {
                                            .replicates = THREE,
                                            .x = s.x,
                                            .values = s.values};
-    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    OK(seed_scatter_fit(&runs, true, &fit, &error));
     const double variance = seed_scatter_variance(&fit, &there);
     assert_true(whole <= 0 || (variance > 0.4 && variance < 2.5)); /* 80 degrees of freedom know it to 30 % */
     assert_true(seed_scatter_variance(&fit, &end) > 0.4 && seed_scatter_variance(&fit, &end) < 16);
@@ -158,32 +153,30 @@ TEST(equal_runs_do_not_hide_the_scatter_of_others) {
 TEST(scatter_knows_two_heaps_and_too_few_runs) {
   static struct sampled s;
   struct seed_scatter fit;
-  struct error error;
   struct seed_scatter_runs runs = sample(&s, 3, 0, 0);
-  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+  OK(seed_scatter_fit(&runs, true, &fit, &error));
   assert_near(fit.excess, 0, 0.7); /* of a normal law, with 360 values +- 0.26 */
   for (size_t i = 0; i < POINTS * REPLICATES; i++)
     s.values[i] = i % 2 ? 0.3 : 0.5;
-  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+  OK(seed_scatter_fit(&runs, true, &fit, &error));
   assert_near(fit.excess, -2, 0.01);
   for (size_t i = 0; i < POINTS * REPLICATES; i++)
     s.values[i] = i % REPLICATES ? (double)NAN : 1;
   assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_CONTENT);
   for (size_t i = 0; i < POINTS * REPLICATES; i++)
     s.values[i] = 1;
-  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+  OK(seed_scatter_fit(&runs, true, &fit, &error));
   assert_true(seed_scatter_variance(&fit, s.x) < 1e-200); /* no seed moves it */
 }
 
 static struct kriging *surface_of(size_t n, const double *x, const double *y, double own, double shared) {
   struct kriging *k = NULL;
-  struct error error;
   OWNED double *noise = calloc(n * n, sizeof *noise);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
       noise[i * n + j] = shared + (i == j ? own : 0);
   const struct kriging_data data = {.points = n, .inputs = 1, .x = x, .mean = y, .noise = noise};
-  assert_int_equal(kriging_fit(&data, &k, &error), STATUS_OK);
+  OK(kriging_fit(&data, &k, &error));
   return k;
 }
 
@@ -255,12 +248,11 @@ static double linear(const double *u, size_t k, uint64_t seed) {
 
 TEST(posterior_is_that_of_a_linear_model) {
   static struct case_fit fit;
-  struct error error;
   const bool bounded[2] = {false, false};
   fit = (struct case_fit){.inputs = 2, .outputs = 2};
   const struct posterior_datum data[2] = {{.value = 1.5, .error = 0.4, .specimens = 1, .shot = 0},
                                           {.value = 0.5, .resolution = 0.4, .specimens = 1, .shot = 1}};
-  assert_int_equal(case_solve(&fit, linear, data, bounded, 1, &error), STATUS_OK);
+  OK(case_solve(&fit, linear, data, bounded, 1, &error));
   assert_false(fit.posterior.sampled);
   /* Both errors are 0.5 with the scatter. Precision I + 4 [2 -1; 1 1]^T [2 -1; 1 1] = [21 -4; -4 9]. */
   const double det = 21 * 9 - 16, right[2] = {4 * (2 * 1.5 + 0.5), 4 * (-1.5 + 0.5)};
@@ -293,7 +285,6 @@ TEST(posterior_is_that_of_a_linear_model) {
 TEST(a_sample_leaves_a_lower_maximum) {
   enum { SIDE = 11, N = SIDE * SIDE };
   static double x[2 * N], y[2][N], noise[N * N];
-  struct error error;
   for (size_t i = 0; i < N; i++) {
     const double a = -2.4 + 4.8 * (double)(i % SIDE) / (SIDE - 1), b = -2.4 + 4.8 * (double)(i / SIDE) / (SIDE - 1);
     const double d = (a - b) / 2;
@@ -308,13 +299,13 @@ TEST(a_sample_leaves_a_lower_maximum) {
                                     {.value = 0, .error = 0.06, .specimens = 1, .shot = 1, .scatter = &none}};
   for (int k = 0; k < 2; k++) {
     const struct kriging_data points = {.points = N, .inputs = 2, .x = x, .mean = y[k], .noise = noise};
-    assert_int_equal(kriging_fit(&points, &data[k].surface, &error), STATUS_OK);
+    OK(kriging_fit(&points, &data[k].surface, &error));
   }
   const double correlation[4] = {1, 0, 0, 1};
   const struct posterior_model model = {.inputs = 2, .outputs = 2, .data = data, .correlation = correlation};
   for (uint64_t seed = 1; seed <= 5; seed++) {
     OWNED_BY(posterior_clear) struct posterior sample;
-    assert_int_equal(posterior_make(&model, seed, &sample, &error), STATUS_OK);
+    OK(posterior_make(&model, seed, &sample, &error));
     assert_true(sample.sampled);
     double mean = 0, square = 0;
     for (size_t n = 0; n < sample.count; n++) {
@@ -367,9 +358,8 @@ static struct kriging *plane_of(const double slope[3]) {
     }
   }
   struct kriging *k = NULL;
-  struct error error;
   const struct kriging_data data = {.points = N, .inputs = 3, .x = x, .mean = y, .noise = noise};
-  assert_int_equal(kriging_fit(&data, &k, &error), STATUS_OK);
+  OK(kriging_fit(&data, &k, &error));
   return k;
 }
 
@@ -386,9 +376,8 @@ TEST(directions_of_a_linear_model) {
     const double correlation[4] = {1, 0, 0, 1};
     const struct posterior_model model = {.inputs = 3, .outputs = 2, .data = data, .correlation = correlation};
     struct posterior posterior;
-    struct error error;
     struct identify found;
-    assert_int_equal(posterior_make(&model, 1, &posterior, &error), STATUS_OK);
+    OK(posterior_make(&model, 1, &posterior, &error));
     identify_find(&model, &posterior, &found);
     const double information[3] = {100, s * s, 0}, along[3][3] = {{0.6, 0.8, 0}, {0, 0, 1}, {0.8, -0.6, 0}};
     assert_int_equal(found.inputs, 3);
@@ -458,11 +447,10 @@ static double ring(const double *u, size_t k, uint64_t seed) {
 TEST(ridges_are_seen) {
   static struct case_fit fit;
   struct identify found;
-  struct error error;
   const bool bounded[2] = {true, true};
   const struct posterior_datum sum = {.value = 1.1, .error = 0.02, .specimens = 1};
   fit = (struct case_fit){.inputs = 2, .outputs = 1};
-  assert_int_equal(case_solve(&fit, sum_only, &sum, bounded, 2, &error), STATUS_OK);
+  OK(case_solve(&fit, sum_only, &sum, bounded, 2, &error));
   identify_find(&fit.surfaces.model, &fit.posterior, &found);
   assert_int_equal(found.determined, 1);
   assert_true(found.direction[0].information > 20 && found.direction[1].information < 0.5);
@@ -474,7 +462,7 @@ TEST(ridges_are_seen) {
 
   const struct posterior_datum radius = {.value = 0.1, .error = 0.004, .specimens = 1};
   fit = (struct case_fit){.inputs = 2, .outputs = 1};
-  assert_int_equal(case_solve(&fit, ring, &radius, bounded, 3, &error), STATUS_OK);
+  OK(case_solve(&fit, ring, &radius, bounded, 3, &error));
   identify_find(&fit.surfaces.model, &fit.posterior, &found);
   /* on the ring one direction is known everywhere, and it differs from point to point */
   assert_int_equal(found.determined, 1);
@@ -494,12 +482,11 @@ static double steep_and_flat(const double *u, size_t k, uint64_t seed) {
 TEST(ridges_follow_unequal_slopes) {
   static struct case_fit fit;
   struct identify found;
-  struct error error;
   const bool bounded[2] = {false, false};
   const struct posterior_datum sum = {.value = 0, .error = 0.1, .specimens = 1};
   for (wiggle = 0; wiggle < 4; wiggle += 3) {
     fit = (struct case_fit){.inputs = 2, .outputs = 1};
-    assert_int_equal(case_solve(&fit, steep_and_flat, &sum, bounded, 6, &error), STATUS_OK);
+    OK(case_solve(&fit, steep_and_flat, &sum, bounded, 6, &error));
     identify_find(&fit.surfaces.model, &fit.posterior, &found);
     const double *along = found.direction[1].along, off = wiggle > 0 ? 0.2 : 0.02; /* the middle alone: -0.8, 0.6 */
     assert_int_equal(found.determined, 1);
@@ -520,12 +507,11 @@ static double five(const double *u, size_t k, uint64_t seed) {
 TEST(five_inputs_are_sampled) {
   static struct case_fit fit;
   struct posterior_datum data[5];
-  struct error error;
   const bool bounded[5] = {false};
   for (size_t k = 0; k < 5; k++)
     data[k] = (struct posterior_datum){.value = 1, .error = 0.3, .specimens = 1, .shot = k};
   fit = (struct case_fit){.inputs = 5, .outputs = 5};
-  assert_int_equal(case_solve(&fit, five, data, bounded, 4, &error), STATUS_OK);
+  OK(case_solve(&fit, five, data, bounded, 4, &error));
   assert_true(fit.posterior.sampled);
   double mean[5], c[25];
   posterior_moments(&fit.posterior, mean, c);
@@ -556,12 +542,11 @@ TEST(errors_of_data_by_hand) {
   const double z[3] = {-1, 0, 1}, values[12] = {4, 6, 1, 3, 7, 9, 0, 4, 1, 5, 8, 12};
   const struct surfaces_runs runs = {.points = 3, .inputs = 1, .outputs = 2, .replicates = 2, .z = z, .values = values};
   const bool bounded[1] = {false};
-  struct error error;
   for (size_t shot = 0; shot < 2; shot++) {
     const struct posterior_datum data[2] = {{.error = 3, .resolution = 4, .specimens = 1},
                                             {.error = 1, .resolution = 0, .specimens = 4, .shot = shot}};
     double gamma[4];
-    assert_int_equal(surfaces_errors(&runs, data, bounded, 3, gamma, &error), STATUS_OK);
+    OK(surfaces_errors(&runs, data, bounded, 3, gamma, &error));
     assert_near(gamma[0], 2 + 9 + 16, 1e-9);
     assert_near(gamma[3], 8.0 / 4 + 1, 1e-9);
     assert_near(gamma[1], shot == 0 ? 0.98 * sqrt(2) * sqrt(8.0 / 4) : 0, 1e-9);
@@ -576,7 +561,6 @@ TEST(points_of_one_run_are_left_out) {
   const struct posterior_datum data = {.value = 1, .error = 1, .specimens = 1};
   const bool bounded = false;
   double at[2];
-  struct error error;
   for (int i = 0; i < ALL; i++)
     values[2 * i] = 2 * z[i] + 0.1, values[2 * i + 1] = 2 * z[i] - 0.1;
   for (int with = 0; with < 2; with++) {
@@ -584,7 +568,7 @@ TEST(points_of_one_run_are_left_out) {
     const struct surfaces_runs runs =
         {.points = with ? ALL : ALL - 1, .inputs = 1, .outputs = 1, .replicates = 2, .z = z, .values = values};
     OWNED_BY(surfaces_clear) struct surfaces surfaces;
-    assert_int_equal(surfaces_fit(&runs, &data, &bounded, &surfaces, &error), STATUS_OK);
+    OK(surfaces_fit(&runs, &data, &bounded, &surfaces, &error));
     assert_int_equal(surfaces.used[0], ALL - 1);
     at[with] = kriging_predict(surfaces.surface[0], &(double){0.25}, NULL);
   }

@@ -31,9 +31,8 @@ static double many(const double *u, size_t k, uint64_t seed) {
 static void fit(const char *name, case_model model, size_t inputs, size_t outputs, const struct posterior_datum *data,
                 const bool *bounded, uint64_t seed) {
   static struct case_fit fit;
-  struct error error;
   fit = (struct case_fit){.inputs = inputs, .outputs = outputs};
-  assert_int_equal(case_solve(&fit, model, data, bounded, seed, &error), STATUS_OK);
+  OK(case_solve(&fit, model, data, bounded, seed, &error));
   fprintf(out, "== %s\n", name);
   SAY("size", (double)fit.rounds, (double)fit.points, (double)fit.posterior.count, fit.posterior.sampled);
   for (size_t k = 0; k < outputs; k++) {

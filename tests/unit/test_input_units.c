@@ -1,10 +1,6 @@
 /* Every input of every engine: a number that has a unit is never accepted without it, a value of absence is a value,
  * and a condition names a row and values of it. No engine has an integer input with a unit so far, so a fault that
  * concerns integers only is not seen here; test_field.c has such a row. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/engine.h"
 #include "tests/support/check.h"
@@ -28,7 +24,6 @@ static void refuses_bare_numbers(const struct field *row) {
     if (number == 0 || !isfinite(number))
       continue; /* 0 is 0 in any unit; without a limit there is no number */
     struct field_value value;
-    struct error error = {.status = STATUS_OK};
     if (field_parse(row, bare[i], &value, &error) != STATUS_CONTENT)
       fail_msg("%s accepts %s without the unit %s", row->path, bare[i], unit);
     char end[60];
@@ -61,7 +56,6 @@ TEST(values_of_absence_are_values) {
       for (size_t i = 0; i < tables[t]->count; i++) {
         const struct field *row = &tables[t]->rows[i];
         struct field_value value;
-        struct error error;
         if (!row->absent)
           continue;
         tried++;

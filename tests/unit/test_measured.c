@@ -1,8 +1,4 @@
 /* Measured spectra: the contents of files, refusals, and distances with known answers. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "analysis/statistics/statistics.h"
@@ -10,7 +6,6 @@
 
 static const struct spectrum_size no_size = {0, 3};
 static const char path[] = "test-measured.csv";
-static struct error error;
 
 static status read_text(const char *text, const struct spectrum_size *size, struct measured *out) {
   FILE *file = fopen(path, "w");
@@ -43,7 +38,7 @@ TEST(the_three_kinds) {
   assert_true(!m.single && m.n == 3 && m.above[0] == 16 && m.above[1] == 6 && m.above[2] == 1);
   OWNED struct pooled_bin *bins = NULL;
   size_t count;
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error), STATUS_OK);
+  OK(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error));
   assert_int_equal(count, 2); /* the last class has no upper end */
   assert_true(bins[0].value == 10 && bins[1].value == 2.5 && isnan(bins[0].half_width));
   measured_release(&m);
@@ -196,25 +191,25 @@ TEST(sieves) {
   struct measured m;
   struct measured_match match;
   assert_int_equal(read_text("mass (kg),retained (%)\n1,10\n2,20\n3,50\n4,20\n", &no_size, &m), STATUS_OK);
-  assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 1, &match, &error));
   near(match.distance, 0.2); /* from 4 kg on 0.2 instead of 0.4 */
   near(match.from, 1);
   near(match.share + 1, 1);
   near(match.simulated, 4);
   assert_true(isnan(match.fragments) && isnan(match.log_likelihood));
-  assert_int_equal(measured_compare(&m, &runs, 2, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 2, &match, &error));
   near(match.distance, 4 / 9.0 - 2 / 9.0);
-  assert_int_equal(measured_compare(&m, &runs, 3.5, &match, &error), STATUS_OK); /* one class has no shape */
+  OK(measured_compare(&m, &runs, 3.5, &match, &error)); /* one class has no shape */
   assert_true(match.from == 4 && isnan(match.distance) && isnan(match.share));
   struct pooled_bin *bins;
   size_t count;
   /* 20 kg in all: 4 kg from 2 to 3 kg are 4 ln(3/2) fragments, as if each decade had the same mass. */
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 20, &bins, &count, &error), STATUS_OK);
+  OK(measured_bins(&m, &(struct pooled_form){0}, 20, &bins, &count, &error));
   assert_int_equal(count, 3);
   near(bins[1].value, 4 * log(1.5));
   assert_true(bins[1].lower == 2 && bins[1].upper == 3);
   free(bins);
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 20, &bins, &count, &error), STATUS_OK);
+  OK(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 20, &bins, &count, &error));
   assert_int_equal(count, 4);
   near(bins[3].value, 1); /* 4 kg from 4 kg on */
   near(bins[2].value, 1 + 10 * log(4 / 3.0));
@@ -222,13 +217,13 @@ TEST(sieves) {
   measured_release(&m);
   /* Shares of all mass, also of what passes the finest sieve: 80 % of 10 kg are 8 kg from 4 kg on. */
   assert_int_equal(read_text("mass (kg),passing (%)\n1,20\n4,20\n", &no_size, &m), STATUS_OK);
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 10, &bins, &count, &error), STATUS_OK);
+  OK(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 10, &bins, &count, &error));
   near(bins[1].value, 2);
   free(bins);
   measured_release(&m);
   /* Masses of classes need no other mass. */
   assert_int_equal(read_text("mass (kg),retained (kg)\n1,1\n4,8\n", &no_size, &m), STATUS_OK);
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 10, &bins, &count, &error), STATUS_OK);
+  OK(measured_bins(&m, &(struct pooled_form){.cumulative = true}, 10, &bins, &count, &error));
   near(bins[1].value, 2);
   free(bins);
   measured_release(&m);
@@ -241,7 +236,7 @@ TEST(empty_bins_count) {
   OWNED struct pooled_bin *bins = NULL;
   size_t count;
   assert_int_equal(read_text("# complete from: 3 kg\nmass (kg)\n4.4\n5.9\n5.91\n16\n", &no_size, &m), STATUS_OK);
-  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error), STATUS_OK);
+  OK(measured_bins(&m, &(struct pooled_form){0}, 0, &bins, &count, &error));
   assert_int_equal(count, 3);
   near(bins[0].lower, 3);
   for (size_t b = 0; b < count; b++) {
@@ -263,40 +258,40 @@ TEST(distances) {
   struct measured m = {.single = true, .n = 2, .mass = mass, .above = (double[]){2, 1}};
 
   /* From 2.5 kg, which is the first one, on: pooled 3 and 4. Share above 2.5: 1 and 1/2. */
-  assert_int_equal(measured_compare(&m, &runs, NAN, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, NAN, &match, &error));
   near(match.from, 2.5);
   near(match.distance, 0.5);
   near(match.fragments, 2);
   near(match.simulated, 2);
   near(match.share + 1, 1);            /* no run differs from the others at all */
   for (size_t n = 1; n <= RUNS; n++) { /* a share of few runs says nothing */
-    assert_int_equal(measured_compare(&m, &(struct pooled_runs){n, first, masses}, NAN, &match, &error), STATUS_OK);
+    OK(measured_compare(&m, &(struct pooled_runs){n, first, masses}, NAN, &match, &error));
     assert_true(n < RUNS ? isnan(match.share) : match.share == 0);
   }
 
   /* From 1 kg: shares of 1, 3/4, 1/2, 1/4 at 1, 2, 3, 4; measured 1, 1, 1/2, 1/2. Greatest just below 2.5 */
-  assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 1, &match, &error));
   near(match.from, 1);
   near(match.distance, 0.5);
   near(match.simulated, 4);
-  assert_int_equal(measured_compare(&m, &runs, 3.5, &match, &error), STATUS_OK); /* a 4 each, which has no shape */
+  OK(measured_compare(&m, &runs, 3.5, &match, &error)); /* a 4 each, which has no shape */
   assert_true(isnan(match.distance) && isnan(match.share));
   near(match.fragments, 1);
 
   /* Thresholds 2.5, 4 and 9 from 3 on: the first that counts is 4. */
   m = (struct measured){.n = 3, .mass = mass, .above = above};
-  assert_int_equal(measured_compare(&m, &runs, 3, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 3, &match, &error));
   near(match.from, 4);
   near(match.distance, 1); /* measured: two above 9, simulated none */
   /* Two classes, 4..9 and from 9, half a fragment added to each: two fragments in the last, of one of each run. */
   near(match.log_likelihood, 2 * log(0.5 / (RUNS + 1)));
-  assert_int_equal(measured_compare(&m, &runs, 2, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 2, &match, &error));
   near(match.from, 2.5);
   near(match.log_likelihood, log((RUNS + 0.5) / (2 * RUNS + 1.5)) + 2 * log(0.5 / (2 * RUNS + 1.5)));
-  assert_int_equal(measured_compare(&m, &runs, 10, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 10, &match, &error));
   assert_true(isnan(match.distance) && match.fragments == 0);
   /* No simulated fragment is so heavy: no number of runs is needed beside those of a shape. */
-  assert_int_equal(measured_compare(&m, &runs, 5, &match, &error), STATUS_OK);
+  OK(measured_compare(&m, &runs, 5, &match, &error));
   assert_true(match.simulated == 0 && match.judged == 0);
   assert_int_equal(match.needed, MATCH_RUNS);
 }
@@ -355,11 +350,11 @@ TEST(a_specimen_with_more_fragments_than_a_run) {
     qsort(mass, MEASURED, sizeof *mass, sample_ascending);
     const struct measured m = {.single = true, .n = MEASURED, .mass = mass, .above = above};
     struct measured_match match;
-    assert_int_equal(measured_compare(&m, &(struct pooled_runs){RUNS, first, masses}, 1, &match, &error), STATUS_OK);
+    OK(measured_compare(&m, &(struct pooled_runs){RUNS, first, masses}, 1, &match, &error));
     assert_true(match.together == 10 && match.needed == 40);
     mean[steeper] += match.share / CASES;
     differ[steeper] += match.share < 0.05;
-    assert_int_equal(measured_compare(&m, &(struct pooled_runs){39, first, masses}, 1, &match, &error), STATUS_OK);
+    OK(measured_compare(&m, &(struct pooled_runs){39, first, masses}, 1, &match, &error));
     assert_true(isnan(match.share) && match.judged == 39); /* too few to draw ten from */
   }
   assert_true(fabs(mean[0] - 0.5) < 4 * sqrt(1 / 12.0 / CASES));
@@ -380,7 +375,7 @@ TEST(runs_are_joined_with_care) {
   static const size_t together[] = {1, 2, 10, 1, 1, 1, 1};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     const struct measured m = {.n = 2, .mass = (double[]){1, 3}, .above = (double[]){counts[i], 2}};
-    assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
+    OK(measured_compare(&m, &runs, 1, &match, &error));
     assert_int_equal(match.together, together[i]);
     assert_true(isnan(match.share) == (i > 2) && match.needed >= MATCH_RUNS);
   }

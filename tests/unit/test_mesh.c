@@ -1,8 +1,4 @@
 /* Meshes: the result of each format, volumes and insides against plain geometry, and every refusal with its line. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "engine/mesh/mesh.h"
@@ -25,7 +21,6 @@ static const char
 
 static struct mesh *read_text(const char *text) {
   struct mesh *mesh;
-  struct error error;
   const status code = mesh_read("shape", text, strlen(text), &mesh, &error);
   if (code)
     print_error("%s\n", error.message);
@@ -33,10 +28,10 @@ static struct mesh *read_text(const char *text) {
   return mesh;
 }
 
-static void near(double value, double expected, double error) {
-  if (!(fabs(value - expected) <= error))
+static void near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
     print_error("%.17g is not %.17g\n", value, expected);
-  assert_true(fabs(value - expected) <= error);
+  assert_true(fabs(value - expected) <= tolerance);
 }
 
 TEST(cube_in_all_forms) {
@@ -149,10 +144,8 @@ TEST(formats_agree) {
     for (int inside_out = 0; inside_out < 2; inside_out++) {
       size_t size;
       struct mesh *m = NULL;
-      struct error error;
       OWNED char *bytes = write_ball(format, inside_out, &size);
-      if (mesh_read("ball", bytes, size, &m, &error))
-        fail_msg("%s", error.message);
+      OK(mesh_read("ball", bytes, size, &m, &error));
       near(m->volume, 4 * M_PI / 3, 0.02 * 4 * M_PI / 3);
       near(m->area, 4 * M_PI, 0.01 * 4 * M_PI);
       if (!first) {
@@ -170,15 +163,13 @@ TEST(binary_file_with_a_tail) {
   static const char tail[] = "\0exported by a program\n";
   size_t size;
   struct mesh *plain, *longer;
-  struct error error;
   OWNED char *bytes = write_ball(2, false, &size);
-  assert_int_equal(mesh_read("ball", bytes, size, &plain, &error), STATUS_OK);
+  OK(mesh_read("ball", bytes, size, &plain, &error));
   assert_int_equal(plain->tail, 0);
   bytes = realloc(bytes, size + sizeof tail);
   memcpy(bytes + size, tail, sizeof tail);
   for (size_t more = 1; more <= sizeof tail; more++) {
-    if (mesh_read("ball", bytes, size + more, &longer, &error))
-      fail_msg("%s", error.message);
+    OK(mesh_read("ball", bytes, size + more, &longer, &error));
     assert_int_equal(longer->tail, more);
     assert_int_equal(longer->faces, plain->faces);
     assert_memory_equal(longer->vertex, plain->vertex, plain->vertices * sizeof *plain->vertex);
@@ -199,9 +190,8 @@ TEST(obj_lines_go_on) {
 TEST(ball_inside_and_distance) {
   size_t size;
   MESH *m = NULL;
-  struct error error;
   OWNED char *bytes = write_ball(2, false, &size);
-  assert_int_equal(mesh_read("ball", bytes, size, &m, &error), STATUS_OK);
+  OK(mesh_read("ball", bytes, size, &m, &error));
   const double r = cos(M_PI / RINGS) * cos(M_PI / AROUND) - 1e-6;
   int in = 0, thrown = 0;
   for (uint64_t i = 0; i < 100000; i++) {
@@ -253,7 +243,6 @@ static char *two_cubes(double scale, double x, bool inside_out) {
 
 static void refused(const char *text, size_t size, const char *part) {
   struct mesh *mesh;
-  struct error error = {0};
   const status code = mesh_read("a.obj", text, size, &mesh, &error);
   if (code != STATUS_CONTENT || !strstr(error.message, part))
     print_error("expected \"%s\", got %d: %s\n", part, code, error.message);
@@ -354,9 +343,8 @@ TEST(ring_is_missed) {
 
 TEST(files_by_content) {
   const struct mesh_file *first, *second;
-  struct error error;
-  assert_int_equal(mesh_files_add("a", cube, sizeof cube - 1, &first, &error), STATUS_OK);
-  assert_int_equal(mesh_files_add("b", cube, sizeof cube - 1, &second, &error), STATUS_OK);
+  OK(mesh_files_add("a", cube, sizeof cube - 1, &first, &error));
+  OK(mesh_files_add("b", cube, sizeof cube - 1, &second, &error));
   assert_ptr_equal(first, second);
   assert_ptr_equal(mesh_files_find(first->hash), first);
   assert_null(mesh_files_find("cube"));

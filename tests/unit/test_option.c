@@ -1,6 +1,4 @@
 /* Option tables: parsing, defaults, ranges, the nearest name, help that mentions every option. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "campaign/commands/commands.h"
 #include "tests/support/check.h"
@@ -29,20 +27,19 @@ static const struct command command = {
     .has_table = true,
 };
 
-static status parse(struct options *options, struct command_line *parsed, struct error *error, const char *line) {
+static status parse(struct options *options, struct command_line *parsed, struct error *e, const char *line) {
   static char text[256], *argv[32];
   int argc = 0;
   snprintf(text, sizeof text, "%s", line);
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " "))
     argv[argc++] = word;
   argv[argc] = NULL;
-  error->message[0] = '\0';
-  return option_parse(&command, argc, argv, options, parsed, error);
+  e->message[0] = '\0';
+  return option_parse(&command, argc, argv, options, parsed, e);
 }
 
 TEST(test_values) {
   struct options options;
-  struct error error;
   struct command_line line;
   assert_int_equal(parse(&options, &line, &error, "test a"), STATUS_OK);
   assert_int_equal(line.format, TABLE_TEXT);
@@ -86,7 +83,6 @@ TEST(test_refusals) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct options options;
-    struct error error;
     struct command_line line;
     assert_int_equal(parse(&options, &line, &error, cases[i].line), STATUS_USAGE);
     if (!strstr(error.message, cases[i].says))
@@ -98,7 +94,6 @@ TEST(test_too_many) {
   static char *argv[140];
   static char set[] = "--set", value[] = "a=1", name[] = "test";
   struct options options;
-  struct error error;
   struct command_line line;
   argv[0] = name;
   for (int i = 1; i < 131; i += 2)

@@ -2,10 +2,6 @@
  * folder as argument the pictures stay there. */
 #define CHECK_OWN_MAIN
 #include <cairo.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -195,7 +191,6 @@ TEST(spectra_are_drawn) {
   ink(at("spectrum.png"), &dark, &coloured, &width, &height);
   assert_true(dark > 0.02 && dark < 0.3 && coloured > 0.003);
   series[0].count = 0;
-  struct error error;
   assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("none.png"), .width = 600},
                                     &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, &form, 1, series, &error),
                    STATUS_USAGE);
@@ -431,7 +426,6 @@ TEST(hostile_text_is_text) {
   char path[512];
   snprintf(path, sizeof path, "%s", page.path);
   page.path = path;
-  struct error error = {0};
   if (picture_curves(&page, &(struct picture_words){evil, evil, evil, evil}, 1, &curve, &error))
     fail_msg("%s", error.message);
   const char *svg = text_of(path);
@@ -445,7 +439,6 @@ TEST(missing_gnuplot_is_told) {
   const struct picture_mean mean[] = {{1, 2, 1, 3, NAN, false}, {2, 3, 2, 4, NAN, false}};
   const struct picture_curve curve = {.label = "a", .count = 2, .mean = mean};
   const struct picture_page page = {.path = "missing.png", .width = 900};
-  struct error error = {0};
   char path[4096];
   snprintf(path, sizeof path, "%s", getenv("PATH"));
   setenv("PATH", "/nowhere", 1);
@@ -459,7 +452,6 @@ TEST(errors_leave_nothing) {
   static struct example e;
   make_example(&e, 0.1);
   struct picture_panel panel = {.body = body_of(&e)};
-  struct error error = {0};
   assert_int_equal(picture_fragments(at("a.jpg"), 600, NULL, NULL, 1, &panel, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, ".png"));
   assert_int_equal(picture_fragments(at("no/such/a.png"), 600, NULL, NULL, 1, &panel, &error), STATUS_IO);

@@ -1,6 +1,4 @@
 /* Fragments side by side: none hides another, the heaviest is kept. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "analysis/pictures/picture_layout.h"
 #include "engine/random.h"

@@ -29,7 +29,6 @@ static struct sph_inputs sphere(void) {
 
 static void *stepped(const struct engine_kind *kind, const void *inputs, uint64_t seed, uint64_t steps) {
   void *run;
-  struct error error = {0};
   bool finished = false;
   if (kind->prepare(inputs, seed, &run, &error) || kind->step(run, steps, &finished, &error))
     fail_msg("%s: %s", kind->name, error.message);
@@ -42,13 +41,10 @@ static void continues(const struct engine_kind *kind, const void *inputs) {
   const uint64_t half = (uint64_t)straight.outcome.steps / 2 + 3; /* between two list rebuilds */
   assert_true(straight.outcome.steps >= 40);
   void *run = stepped(kind, inputs, 11, half), *again;
-  struct error error = {0};
   const double time = kind->time(run);
-  if (restart_save(kind, run, in_folder("run.restart"), &error))
-    fail_msg("%s", error.message);
+  OK(restart_save(kind, run, in_folder("run.restart"), &error));
   kind->free(run);
-  if (restart_load(kind, inputs, in_folder("run.restart"), &again, &error))
-    fail_msg("%s", error.message);
+  OK(restart_load(kind, inputs, in_folder("run.restart"), &again, &error));
   assert_true(kind->time(again) == time && time > 0);
   run_case_same(kind, &straight, run_case_end(kind, again, 37));
   kind->free(again);
@@ -77,7 +73,6 @@ TEST(restart_continues_with_the_same_bits) {
 
 /* Fails unless `path` is refused as bad content with a message that contains `why`. */
 static void refused(const struct engine_kind *kind, const void *inputs, const char *path, const char *why) {
-  struct error error = {0};
   void *run;
   assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_CONTENT);
   assert_null(run);
@@ -106,7 +101,6 @@ static void change_word(const char *path, size_t at, uint64_t more) {
 
 static void damaged_is_refused(const struct engine_kind *kind, const void *inputs, const void *other,
                                const struct engine_kind *foreign, const void *foreign_inputs) {
-  struct error error = {0};
   char path[200];
   snprintf(path, sizeof path, "%s", in_folder("a.restart"));
   void *run = stepped(kind, inputs, 1, 5);
@@ -130,7 +124,7 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
     fputc(byte, file);
     fclose(file);
   }
-  assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_OK);
+  OK(restart_load(kind, inputs, path, &run, &error));
   kind->free(run);
   /* Another build may keep the same arrays in another order: its file would be read as plausible but wrong numbers. */
   for (size_t at = AT_VERSION; at <= AT_BUILD; at += AT_BUILD - AT_VERSION) {
@@ -138,7 +132,7 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
     refused(kind, inputs, path, "another build");
     change_word(path, at, 1);
   }
-  assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_OK);
+  OK(restart_load(kind, inputs, path, &run, &error));
   kind->free(run);
   assert_int_equal(truncate(path, info.st_size / 2), 0);
   refused(kind, inputs, path, "cut short");
@@ -187,9 +181,8 @@ TEST(restart_of_another_cpu_class_is_refused) {
 }
 
 static void failed_writes_leave_nothing(const struct engine_kind *kind, const void *inputs) {
-  struct error error = {0};
   void *run;
-  assert_int_equal(kind->prepare(inputs, 5, &run, &error), STATUS_OK);
+  OK(kind->prepare(inputs, 5, &run, &error));
   assert_int_equal(kind->write_snapshot(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
   assert_non_null(strstr(error.message, "No such file"));
   assert_int_equal(kind->write_snapshot(run, "/dev/full/fields.hdf", &error), STATUS_IO);
@@ -251,9 +244,7 @@ TEST(killed_amid_a_write_the_file_is_whole) {
     int ended;
     assert_int_equal(waitpid(child, &ended, 0), child);
     assert_true(WIFSIGNALED(ended));
-    struct error error = {0};
-    if (restart_load(&sph_engine, &inputs, path, &again, &error))
-      fail_msg("%s", error.message);
+    OK(restart_load(&sph_engine, &inputs, path, &again, &error));
     assert_true(sph_engine.time(again) == sph_engine.time(run));
     sph_engine.free(again);
   }

@@ -1,7 +1,4 @@
 /* Finite-size scaling of made-up runs with known exponents, and of runs that have none. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/inference/scaling.h"
 #include "engine/random.h"
@@ -42,8 +39,7 @@ static size_t make(const struct law *law, struct scaling_run *run) {
 }
 
 static void find(size_t n, const struct scaling_run *run, struct scaling *found) {
-  struct error error;
-  assert_int_equal(scaling_find(n, run, 2, found, &error), STATUS_OK);
+  OK(scaling_find(n, run, 2, found, &error));
 }
 
 static const double exact[SCALING_VALUES] = {CRITICAL, NU, BETA, GAMMA, CUTOFF, 3 - 1.6 / 1.8};

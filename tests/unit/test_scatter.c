@@ -1,6 +1,4 @@
 /* Scatter of a sample: known quantiles, modes, numbers of runs; coverage of the intervals; the split of a variance. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"

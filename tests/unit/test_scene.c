@@ -1,8 +1,5 @@
 /* Scenes: built-in documents, reading with the engine's table, overrides, checks, identity; the hash behind it against
  * known answers. The registry is replaced by a tiny engine of this test: scene.c is compiled in here. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #define engine_find tiny_find
@@ -48,27 +45,25 @@ static const struct field rows[] = {
 };
 static const struct field_table inputs = FIELD_TABLE(rows, struct tiny, "tiny scene", "A tiny engine.");
 
-static status check(const void *object, struct error *error) {
+static status check(const void *object, struct error *e) {
   const struct tiny *tiny = object;
   if (tiny->count > 100 && tiny->speed > 100)
-    return status_fail(error, STATUS_CONTENT, "fidelity.count: too much at this impact.speed");
+    return status_fail(e, STATUS_CONTENT, "fidelity.count: too much at this impact.speed");
   return STATUS_OK;
 }
 static const struct engine_kind tiny = {.name = "tiny", .results_version = 3, .inputs = &inputs, .check = check};
 static const struct engine_kind tiny_next = {.name = "tiny", .results_version = 4, .inputs = &inputs, .check = check};
 
-const struct engine_kind *tiny_find(const char *name, struct error *error) {
+const struct engine_kind *tiny_find(const char *name, struct error *e) {
   if (strcmp(name, "tiny") == 0)
     return &tiny;
-  status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: tiny", name);
+  status_fail(e, STATUS_CONTENT, "there is no engine '%.60s'; known are: tiny", name);
   return NULL;
 }
 
 static struct scene *parsed(const char *text) {
   struct scene *scene = NULL;
-  struct error error = {0};
-  if (scene_parse("t", text, &scene, &error))
-    fail_msg("%s", error.message);
+  OK(scene_parse("t", text, &scene, &error));
   return scene;
 }
 
@@ -92,13 +87,12 @@ TEST(reads_and_fills_defaults) {
 }
 
 TEST(named_settings_give_inputs) {
-  struct error error = {0};
   struct scene *scene = parsed("engine: tiny\nkind: ball\nball: {size: 3 cm}\nsettings:\n  draft: {ball.size: 5 cm}\n");
   const struct tiny *values = scene->inputs;
-  assert_int_equal(scene_settings_use(scene, "standard", &error), STATUS_OK);
+  OK(scene_settings_use(scene, "standard", &error));
   assert_true(values->size == 0.03);
   struct scene *copy = scene_copy(scene);
-  assert_int_equal(scene_settings_use(copy, "draft", &error), STATUS_OK);
+  OK(scene_settings_use(copy, "draft", &error));
   assert_true(values->size == 0.03 && ((const struct tiny *)copy->inputs)->size == 0.05);
   assert_false(copy->overridden[2]); /* as if it were in the document */
   assert_int_equal(scene_settings_use(copy, "drat", &error), STATUS_MISSING);
@@ -123,7 +117,6 @@ TEST(named_settings_give_inputs) {
 
 TEST(errors_come_together) {
   struct scene *scene = NULL;
-  struct error error;
   assert_int_equal(scene_parse("t", "engine: tiny\nimpact: {speed: 3 m}\nball: {sise: 3}\n", &scene, &error),
                    STATUS_CONTENT);
   assert_null(scene);
@@ -152,22 +145,21 @@ TEST(errors_come_together) {
 
 TEST(overrides_are_checked) {
   struct scene *scene = parsed("engine: tiny\nkind: ball\nball: {size: 3 cm}\n"), *copy = scene_copy(scene);
-  struct error error;
-  assert_int_equal(scene_set_text(copy, "speed", "1 km/s", &error), STATUS_OK);
+  OK(scene_set_text(copy, "speed", "1 km/s", &error));
   assert_true(((struct tiny *)copy->inputs)->speed == 1000);
   assert_true(((struct tiny *)scene->inputs)->speed == 10); /* the original scene is unchanged */
   assert_int_equal(scene_set_text(copy, "speed", "1 km", &error), STATUS_CONTENT);
   assert_string_equal(error.message, "impact.speed: expected a speed such as m/s, got a length (km)");
   assert_int_equal(scene_set_text(copy, "sped", "1", &error), STATUS_CONTENT);
   assert_string_equal(error.message, "the tiny scene has no 'sped'; did you mean 'impact.speed'?");
-  assert_int_equal(scene_check(copy, &error), STATUS_OK);
+  OK(scene_check(copy, &error));
   const struct field_value many = {.kind = FIELD_INTEGER, .integer = 1000};
-  assert_int_equal(scene_set(copy, "fidelity.count", &many, &error), STATUS_OK);
+  OK(scene_set(copy, "fidelity.count", &many, &error));
   assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* a condition across fields: the engine's own message */
   assert_string_equal(error.message, "fidelity.count: too much at this impact.speed");
   scene_free(copy);
   copy = scene_copy(scene);
-  assert_int_equal(scene_set_text(copy, "kind", "block", &error), STATUS_OK);
+  OK(scene_set_text(copy, "kind", "block", &error));
   assert_int_equal(scene_check(copy, &error),
                    STATUS_OK); /* the document's ball.size has no effect now: as if it had not been there */
   struct scene *block = parsed("engine: tiny\nkind: block\n");
@@ -179,8 +171,8 @@ TEST(overrides_are_checked) {
   scene_free(block);
   scene_free(copy);
   copy = scene_copy(scene);
-  assert_int_equal(scene_set_text(copy, "ball.size", "4 cm", &error), STATUS_OK);
-  assert_int_equal(scene_set_text(copy, "kind", "block", &error), STATUS_OK);
+  OK(scene_set_text(copy, "ball.size", "4 cm", &error));
+  OK(scene_set_text(copy, "kind", "block", &error));
   assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* an override of an inactive input is an error */
   assert_string_equal(
       error.message,
@@ -244,7 +236,6 @@ TEST(hash_has_known_answers) {
 
 TEST(files_and_names) {
   struct scene *scene = NULL;
-  struct error error;
   assert_int_equal(scene_load("no-such-scene", NULL, &scene, &error), STATUS_MISSING);
   assert_non_null(strstr(error.message, "there is no built-in scene 'no-such-scene'"));
   assert_int_equal(scene_load("no-such-scene.yaml", NULL, &scene, &error), STATUS_MISSING);
@@ -256,10 +247,10 @@ TEST(files_and_names) {
   assert_true(file >= 0);
   assert_int_equal(write(file, "engine: tiny\n", 13), 13);
   close(file);
-  assert_int_equal(scene_load(path, ".", &scene, &error), STATUS_OK);
+  OK(scene_load(path, ".", &scene, &error));
   assert_int_equal(strlen(scene->name), strlen(path) - 5); /* the file's own name, without its ending */
   scene_free(scene);
-  assert_int_equal(scene_load(path, NULL, &scene, &error), STATUS_OK);
+  OK(scene_load(path, NULL, &scene, &error));
   scene_free(scene);
   unlink(path);
   for (size_t i = 0; i < scene_builtin_count(); i++) {

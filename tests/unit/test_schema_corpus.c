@@ -11,6 +11,7 @@
 
 #include "campaign/document/campaign.h"
 #include "engine/scene.h"
+#include "tests/support/owned.h"
 
 /* The engine behind "scene-<engine>"; NULL for "campaign". */
 static const struct engine_kind *engine_of(const char *kind) {

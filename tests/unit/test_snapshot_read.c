@@ -24,22 +24,20 @@ static const struct engine_kind fake = {.name = "fake",
 static void write_file(const char *path) {
   struct snapshot_file *file = NULL;
   struct fixture_inputs inputs;
-  struct error error;
   const struct outcome outcome = {.time = 0.5};
   field_defaults(&fixture_inputs_table, &inputs);
-  assert_int_equal(snapshot_file_open(&fake, 7, &inputs, &outcome, &inputs, &file, &error), STATUS_OK);
+  OK(snapshot_file_open(&fake, 7, &inputs, &outcome, &inputs, &file, &error));
   snapshot_file_data(file, POINTS, SNAPSHOT_FILE_REAL, ROWS, 3, points, "m", "where");
-  assert_int_equal(snapshot_file_save(file, path, &error), STATUS_OK);
+  OK(snapshot_file_save(file, path, &error));
   snapshot_file_close(file);
 }
 
 /* The reader's result for `path`. */
 static void look(const char *path, bool *rows, bool *time) {
   struct snapshot_read *file;
-  struct error error = {0};
   size_t count;
   double value = 0;
-  assert_int_equal(snapshot_read_open(path, &file, &error), STATUS_OK);
+  OK(snapshot_read_open(path, &file, &error));
   OWNED double *read = snapshot_read_rows(file, POINTS, 3, SNAPSHOT_READ_REAL, &count);
   *rows = read;
   *time = snapshot_read_real(file, "run", "time", &value);

@@ -1,7 +1,4 @@
 /* Bin edges are exact: a mass on an edge is in the bin above, the double before it in the bin below. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"

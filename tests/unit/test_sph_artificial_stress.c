@@ -1,7 +1,4 @@
 /* The artificial stress of one particle: against its definition, and in every CPU class against plain C. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"

@@ -2,8 +2,6 @@
  * s(t) = t^2 (3 - 2t), t from 0 at a mean eigenvalue of 0.1 (a determinant over its cube of 0.3) to 1 at 0.2 (at 0.6),
  * and both multiplied, B is s times the inverse plus 1 - s times 1. s(1/4) = 5/32, s(1/2) = 1/2, s(3/4) = 27/32.
  * Where the target spins, rotations are whole for any B. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "engine/sph/pairs/pairs.h"
 #include "tests/support/check.h"

@@ -10,12 +10,11 @@ static const double side = 0.01, load = 1e-3; /* m; strain: more than twice the 
 
 static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **flaws) {
   struct solid_case c = solid_pulled_cube(side, load);
-  struct error error;
   const struct sph_flaw_law law = {.weibull = c.physics[0].material.weibull,
                                    .draw = SPH_FLAWS_POISSON,
                                    .seed = seed,
                                    .cell_width = width};
-  assert_int_equal(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], NULL, flaws, &error), STATUS_OK);
+  OK(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], NULL, flaws, &error));
   c.parameters.in.crack_cell.width = width;
   c.physics[0].flaws = *flaws;
   return c;
@@ -25,13 +24,12 @@ static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **
  * cubes cut by the surface. Each cell has a particle. The same seed gives the same cells, another seed other cells. */
 TEST(cubes) {
   struct sph_flaws *flaws;
-  struct error error;
   struct sph_cells *cells[3];
   const double width = side / 4;
   struct solid_case c = pulled(0, 1, &flaws);
   const struct sph_particles *p = c.particles;
   for (uint64_t k = 0; k < 3; k++)
-    assert_int_equal(sph_flaws_cells(1 + k % 2, 0, width, p, c.range[0], &cells[k], &error), STATUS_OK);
+    OK(sph_flaws_cells(1 + k % 2, 0, width, p, c.range[0], &cells[k], &error));
   assert_true(cells[0]->count > 64 && cells[0]->count < 216); /* the cube is cut by a turned grid */
   OWNED unsigned char *seen = calloc(cells[0]->count, 1);
   for (size_t i = 0; i < p->n; i++) {

@@ -1,7 +1,4 @@
 /* Craters: holes of known size in a lattice, ejecta, closed pores and their shares. */
-#include <math.h>
-#include <stdbool.h>
-#include <string.h>
 
 #include "engine/sph/observe/observe.h"
 #include "engine/vector3.h"

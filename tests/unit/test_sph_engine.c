@@ -45,7 +45,6 @@ TEST(builtin_scenes_say_what_they_model) {
     inputs.stretch.grip = 3e-3;
     inputs.stretch.flaw_free = 8e-3;
     inputs.collision.gap = 2 * sph_derived_spacing(&inputs);
-    struct error error = {0};
     void *made;
     const size_t before = allocated();
     if (sph_engine.prepare(&inputs, 1, &made, &error))
@@ -209,22 +208,18 @@ TEST(chunks_and_restarts_do_not_matter) {
     struct ran whole = run_case_run(&sph_engine, &cases[c], 3);
     void *run;
     bool finished = false;
-    struct error error = {0};
     assert_int_equal(sph_engine.prepare(&cases[c], 3, &run, NULL), STATUS_OK);
     assert_int_equal(sph_engine.step(run, (uint64_t)whole.outcome.steps / 2 + 1, &finished, NULL), STATUS_OK);
     assert_false(finished);
-    if (restart_save(&sph_engine, run, path, &error))
-      fail_msg("%s", error.message);
+    OK(restart_save(&sph_engine, run, path, &error));
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
     sph_engine.free(run);
-    if (restart_load(&sph_engine, &cases[c], path, &run, &error))
-      fail_msg("%s", error.message);
+    OK(restart_load(&sph_engine, &cases[c], path, &run, &error));
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
     if (restart_save(&sph_engine, run, path, &error)) /* at the end, too: no step is left to find anything again */
       fail_msg("%s", error.message);
     sph_engine.free(run);
-    if (restart_load(&sph_engine, &cases[c], path, &run, &error))
-      fail_msg("%s", error.message);
+    OK(restart_load(&sph_engine, &cases[c], path, &run, &error));
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
     sph_engine.free(run);
     cases[c].viscosity.alpha += 0.1;

@@ -2,10 +2,6 @@
  * ParaView open; truncated, changed and foreign files are refused. Also pictures from such files: with a folder as
  * argument they stay there. */
 #define CHECK_OWN_MAIN
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -44,9 +40,7 @@ static struct sph_particles *shattered(double count) {
   body[1].lattice = (struct sph_lattice){.kind = SPH_LATTICE_CUBIC, .particles = count / 60, .body = 1};
   struct sph_particles *p;
   struct sph_range range[2];
-  struct error error = {0};
-  if (sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_DISTENTION, &p, range, &error))
-    fail_msg("%s", error.message);
+  OK(sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_DISTENTION, &p, range, &error));
   for (size_t i = 0; i < p->n; i++) {
     double r[3] = {p->x[i] / 0.03, p->y[i] / 0.03, p->z[i] / 0.03},
            size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
@@ -87,16 +81,16 @@ static struct sph_fragments pieces_of(const struct sph_particles *p) {
 }
 
 static status write_file(const char *path, const struct sph_particles *p, const struct sph_fragments *pieces,
-                         const uint32_t *flaws, struct error *error) {
+                         const uint32_t *flaws, struct error *e) {
   static struct sph_inputs inputs;
   static struct sph_results results;
   const struct outcome outcome = {.time = 2.5e-5};
   struct snapshot_file *file;
   field_defaults(&sph_inputs, &inputs);
   field_defaults(&sph_results, &results);
-  assert_int_equal(snapshot_file_open(&sph_engine, 7, &inputs, &outcome, &results, &file, error), STATUS_OK);
+  assert_int_equal(snapshot_file_open(&sph_engine, 7, &inputs, &outcome, &results, &file, e), STATUS_OK);
   sph_snapshot_particles(file, p, pieces, flaws);
-  status code = snapshot_file_save(file, path, error);
+  status code = snapshot_file_save(file, path, e);
   snapshot_file_close(file);
   return code;
 }
@@ -121,9 +115,7 @@ TEST(what_is_written_is_what_is_read) {
   OWNED double *values = malloc(9 * (n + 1) * sizeof *values);
   for (size_t i = 0; i < n; i++)
     flaws[i] = (uint32_t)(i % 17);
-  struct error error = {0};
-  if (write_file(at("a.hdf"), p, &pieces, flaws, &error))
-    fail_msg("%s", error.message);
+  OK(write_file(at("a.hdf"), p, &pieces, flaws, &error));
   hid_t file = H5Fopen(at("a.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT);
   assert_true(file >= 0);
   read_doubles(file, "VTKHDF/Points", n, 3, values);
@@ -179,8 +171,7 @@ TEST(what_is_written_is_what_is_read) {
   H5Fclose(file);
 
   OWNED_BY(picture_cloud_clear) struct picture_cloud cloud;
-  if (picture_cloud_read(at("a.hdf"), &cloud, &error))
-    fail_msg("%s", error.message);
+  OK(picture_cloud_read(at("a.hdf"), &cloud, &error));
   assert_true(picture_cloud_in_file(at("a.hdf")));
   assert_int_equal(cloud.n, n);
   assert_string_equal(cloud.engine, "sph");
@@ -192,7 +183,7 @@ TEST(what_is_written_is_what_is_read) {
   }
   double *column;
   char unit[32];
-  assert_int_equal(picture_cloud_read_column(at("a.hdf"), &cloud, "pressure", &column, unit, &error), STATUS_OK);
+  OK(picture_cloud_read_column(at("a.hdf"), &cloud, "pressure", &column, unit, &error));
   for (size_t i = 0; i < n; i++)
     assert_true(isnan(column[i]) || column[i] >= fmin(p->pressure[i], 0));
   assert_string_equal(unit, "Pa");
@@ -289,7 +280,6 @@ TEST(damaged_and_foreign_files_are_refused) {
   SPH_PARTICLES *p = shattered(500);
   OWNED_BY(sph_fragments_clear) struct sph_fragments pieces = pieces_of(p);
   struct picture_cloud cloud;
-  struct error error = {0};
   size_t n = p->n;
   char good[512], bad[512];
   snprintf(good, sizeof good, "%s", at("good.hdf"));
@@ -330,7 +320,7 @@ TEST(damaged_and_foreign_files_are_refused) {
     copy_file(good, bad, (long)info.st_size);                                                                          \
   } while (0)
   copy_file(good, bad, (long)info.st_size);
-  assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_OK);
+  OK(picture_cloud_read(bad, &cloud, &error));
   picture_cloud_clear(&cloud);
   wild[7] = NAN;
   replace(bad, "VTKHDF/Points", H5T_NATIVE_DOUBLE, 2, n, 3, wild);
@@ -383,10 +373,9 @@ static unsigned char pixel(const char *path, double x,
 TEST(pictures) {
   struct sph_particles *p = shattered(keep_pictures ? 60000 : 8000);
   OWNED_BY(sph_fragments_clear) struct sph_fragments pieces = pieces_of(p);
-  struct error error = {0};
   assert_int_equal(write_file(at("p.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
   OWNED_BY(picture_cloud_clear) struct picture_cloud cloud;
-  assert_int_equal(picture_cloud_read(at("p.hdf"), &cloud, &error), STATUS_OK);
+  OK(picture_cloud_read(at("p.hdf"), &cloud, &error));
   char numbers[200], unit[32];
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
   assert_non_null(strstr(numbers, "of the mass"));
@@ -409,15 +398,13 @@ TEST(pictures) {
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     OWNED double *column = NULL;
     if (wanted[k].column)
-      assert_int_equal(picture_cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, &error),
-                       STATUS_OK);
+      OK(picture_cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, &error));
     cloud.value = column;
     look.view = wanted[k].view;
     look.axis = wanted[k].axis;
     look.quantity = wanted[k].column;
     look.unit = unit;
-    if (picture_particles(at(wanted[k].file), 900, &cloud, &look, &error))
-      fail_msg("%s", error.message);
+    OK(picture_particles(at(wanted[k].file), 900, &cloud, &look, &error));
   }
   cloud.value = NULL;
   /* the core of the damage picture is light, the crater dark; paper all round is white */

@@ -15,7 +15,6 @@ static struct sph_inputs impact(void) {
 
 TEST(fields_hold_what_the_run_reports) {
   struct sph_inputs inputs = impact();
-  struct error error = {0};
   char path[200];
   void *handle;
   snprintf(path, sizeof path, "%s", in_folder("fields.hdf"));
@@ -24,16 +23,14 @@ TEST(fields_hold_what_the_run_reports) {
   if (sph_engine.write_snapshot(run, path, &error))
     fail_msg("before the first step: %s", error.message);
   struct ran ran = run_case_end(&sph_engine, run, 1000);
-  if (sph_engine.write_snapshot(run, path, &error))
-    fail_msg("%s", error.message);
+  OK(sph_engine.write_snapshot(run, path, &error));
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   assert_true(fields_file_described(file) > sph_results.count / 2 + outcome_table.count + 20);
   assert_true(fields_file_scalar(file, "outcome/time") == ran.outcome.time && sph_engine.time(run) == ran.outcome.time);
   assert_true(fields_file_scalar(file, "results/largest.veneer_fraction") == ran.results.sph.largest.veneer_fraction);
   H5Fclose(file);
   struct picture_cloud cloud;
-  if (picture_cloud_read(path, &cloud, &error))
-    fail_msg("%s", error.message);
+  OK(picture_cloud_read(path, &cloud, &error));
   assert_int_equal(cloud.n, run->start->n);
   assert_true(cloud.time == ran.outcome.time && cloud.seed == 5);
   double *column, mass = 0, flaws = 0;
@@ -52,7 +49,7 @@ TEST(fields_hold_what_the_run_reports) {
   assert_true(singles > 0 && singles <= ran.outcome.single_count);
   for (size_t f = 0; f < ran.count; f++)
     assert_true(fabs(heaviest[f] - ran.fragments[f].mass) <= 1e-12 * mass);
-  assert_int_equal(picture_cloud_read_column(path, &cloud, "flaws", &column, unit, &error), STATUS_OK);
+  OK(picture_cloud_read_column(path, &cloud, "flaws", &column, unit, &error));
   for (size_t i = 0; i < cloud.n; i++) {
     assert_true(i < run->targets ? column[i] >= 1 : column[i] == 0); /* every particle of the target has one */
     flaws += column[i];

@@ -1,8 +1,5 @@
 /* Flaws as points in a body: uniform, owned by the nearest particle, the same at every resolution; ends without flaws;
  * graded bodies; the law's scatter and its extremes. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -26,9 +23,7 @@ static struct sph_particles *make(const struct sph_body *body, int arrays, struc
 static struct sph_flaws *place(const struct sph_flaw_law *law, const struct sph_body *body,
                                const struct sph_particles *p, struct sph_range range, const struct sph_middle *middle) {
   struct sph_flaws *flaws = NULL;
-  struct error error = {0};
-  if (sph_flaws_place(law, &body->shape, p, range, middle, &flaws, &error))
-    fail_msg("%s", error.message);
+  OK(sph_flaws_place(law, &body->shape, p, range, middle, &flaws, &error));
   return flaws;
 }
 
@@ -242,7 +237,6 @@ TEST(ends_have_none) {
   sph_flaws_free(without);
   const struct sph_middle nothing = {.axis = {0, 0, 1}, .half = -1};
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .seed = 1};
-  struct error error = {0};
   assert_int_equal(sph_flaws_place(&law, &rod.shape, p, range, &nothing, &with, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "flaw-free ends"));
   assert_null(with);
@@ -294,7 +288,6 @@ TEST(extremes_of_the_law) {
   struct sph_particles *p = make(&body, 0, &range);
   const double ms[] = {1, 8.5, 200}, ks[] = {1, 1e34, 1e200, 1e300};
   struct sph_flaws *flaws = NULL;
-  struct error error;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++)
       for (int draw = 0; draw < 2; draw++) {

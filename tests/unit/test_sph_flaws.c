@@ -1,7 +1,5 @@
 /* Explicit flaws against the Weibull law: ranked thresholds exactly, poisson by its known scatter, extremes without
  * overflow. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "tests/support/check.h"
@@ -10,8 +8,7 @@
 static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_t n) {
   struct sph_flaw_law law = {.weibull = {m, k}, .volume = 1e-5, .draw = draw, .seed = seed};
   struct sph_flaws *flaws = NULL;
-  struct error error = {0};
-  assert_int_equal(sph_flaws_make(&law, n, NULL, NULL, 0, &flaws, &error), STATUS_OK);
+  OK(sph_flaws_make(&law, n, NULL, NULL, 0, &flaws, &error));
   return flaws;
 }
 
@@ -156,7 +153,6 @@ static size_t only_first(void *context, uint64_t flaw) {
 TEST(owner_that_starves_a_particle_is_refused) {
   struct sph_flaw_law law = {.weibull = {9, 1e30}, .volume = 1, .draw = SPH_FLAWS_RANKED, .seed = 1};
   struct sph_flaws *flaws = NULL;
-  struct error error = {0};
   assert_int_equal(sph_flaws_make(&law, 2, only_first, NULL, 100, &flaws, &error), STATUS_CONTENT);
   assert_null(flaws);
   assert_string_equal(error.message,

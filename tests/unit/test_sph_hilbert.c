@@ -1,5 +1,4 @@
 /* The order of particles along Hilbert's curve. */
-#include <math.h>
 
 #include "engine/sph/body/kd_tree.h"
 #include "tests/support/check.h"
@@ -11,7 +10,6 @@ TEST(a_permutation_that_keeps_neighbours_near) {
   static double x[3][COUNT];
   static uint32_t order[COUNT];
   char seen[COUNT] = {0};
-  struct error error = {0};
   uint64_t seed = 5;
   for (int i = 0; i < COUNT; i++) { /* a jittered cubic lattice */
     const int at[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
@@ -19,7 +17,7 @@ TEST(a_permutation_that_keeps_neighbours_near) {
       x[d][i] = at[d] + 0.5 + 0.2 * noise(&seed);
   }
   x[2][3] = 1e9; /* the rest must not fall into one cell */
-  assert_int_equal(sph_hilbert_find(COUNT, x[0], x[1], x[2], order, &error), STATUS_OK);
+  OK(sph_hilbert_find(COUNT, x[0], x[1], x[2], order, &error));
   double step = 0;
   for (size_t k = 0; k < COUNT; k++) {
     assert_in_range(order[k], 0, COUNT - 1);
@@ -37,10 +35,9 @@ TEST(a_permutation_that_keeps_neighbours_near) {
 TEST(from_cell_to_cell_by_faces) {
   static double x[3][CELLS];
   static uint32_t order[CELLS];
-  struct error error = {0};
   for (size_t i = 0; i < CELLS; i++)
     x[0][i] = (double)(i % GRID), x[1][i] = (double)(i / GRID % GRID), x[2][i] = (double)(i / GRID / GRID);
-  assert_int_equal(sph_hilbert_find(CELLS, x[0], x[1], x[2], order, &error), STATUS_OK);
+  OK(sph_hilbert_find(CELLS, x[0], x[1], x[2], order, &error));
   for (size_t k = 1; k < CELLS; k++) {
     double way = 0;
     for (int d = 0; d < 3; d++)
@@ -53,11 +50,10 @@ TEST(from_cell_to_cell_by_faces) {
 TEST(ties_stand_by_number) {
   static double x[3][COUNT];
   static uint32_t order[COUNT];
-  struct error error = {0};
   for (int i = 0; i < COUNT; i++)
     x[0][i] = i % 2, x[1][i] = x[2][i] = 0;
-  assert_int_equal(sph_hilbert_find(COUNT, x[0], x[1], x[2], order, &error), STATUS_OK);
+  OK(sph_hilbert_find(COUNT, x[0], x[1], x[2], order, &error));
   for (uint32_t k = 1; k < COUNT; k++)
     assert_true(k == COUNT / 2 ? order[k] % 2 != order[k - 1] % 2 : order[k] == order[k - 1] + 2);
-  assert_int_equal(sph_hilbert_find(0, NULL, NULL, NULL, NULL, &error), STATUS_OK);
+  OK(sph_hilbert_find(0, NULL, NULL, NULL, NULL, &error));
 }

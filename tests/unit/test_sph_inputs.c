@@ -1,7 +1,4 @@
 /* Inputs and materials of engine sph: tables, defaults from a named material, refusals and their remedies. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/builtin.h"
 #include "engine/scene.h"
@@ -25,10 +22,9 @@ struct read_scene {
 static struct read_scene read_text(const char *text) {
   struct read_scene r = {0};
   struct document *document;
-  struct error error = {0};
   const char *report = NULL;
   field_defaults(&sph_inputs, &r.inputs);
-  assert_int_equal(document_parse("scene", text, strlen(text), &document, &error), STATUS_OK);
+  OK(document_parse("scene", text, strlen(text), &document, &error));
   assert_true(sph_inputs.count < sizeof r.given / sizeof r.given[0]);
   r.good = document_read_given(document_root(document), &sph_inputs, NULL, &r.inputs, r.given, complete);
   document_finish(document, &report);
@@ -46,7 +42,6 @@ static struct sph_inputs good(const char *text) {
 
 static void refused(const char *text, const char *word) { /* by the conditions across fields */
   struct sph_inputs inputs = good(text);
-  struct error error = {0};
   assert_int_equal(sph_inputs_check(&inputs, &error), STATUS_CONTENT);
   if (!strstr(error.message, word))
     fail_msg("no '%s' in: %s", word, error.message);
@@ -54,7 +49,6 @@ static void refused(const char *text, const char *word) { /* by the conditions a
 
 static void accepted(const char *text) {
   struct sph_inputs inputs = good(text);
-  struct error error = {0};
   if (sph_inputs_check(&inputs, &error))
     fail_msg("%s: %s", text, error.message);
 }
@@ -76,7 +70,6 @@ TEST(table_is_whole) {
   for (size_t i = 0; i < sph_inputs.count; i++) {
     const struct field *row = &sph_inputs.rows[i];
     struct field_value value;
-    struct error error = {0};
     field_get(row, &inputs, &value);
     if (field_is_active(&sph_inputs, row, &inputs) && !(row->flags & FIELD_MAY_BE_OFF && field_is_off(value.number)) &&
         field_set(row, &inputs, &value, &error))
@@ -88,10 +81,8 @@ TEST(table_is_whole) {
 TEST(every_material_is_sound) {
   for (size_t i = 0; i < 10 || sph_materials_name(i); i++) { /* there are ten or more */
     struct sph_material m;
-    struct error error = {0};
     const char *name = sph_materials_name(i);
-    if (sph_materials_load(name, &m, &error))
-      fail_msg("%s", error.message);
+    OK(sph_materials_load(name, &m, &error));
     assert_non_null(strstr(sph_materials_text(name), "source: "));
     char key[100];
     snprintf(key, sizeof key, "\nmaterial: %s\n", name); /* the document says its own name */
@@ -115,7 +106,6 @@ TEST(every_material_is_sound) {
   assert_true(fabs(sph_material_crack_speed(&basalt) / 1837 - 1) < 1e-3);
   assert_true(sph_material_poisson_ratio(&granite) > 0.2);
   assert_true(gabbro.weibull.k == 1.39e18); /* the paper's 1.39e12 is per cm^3 */
-  struct error error = {0};
   struct sph_material m;
   assert_int_equal(sph_materials_load("basalr", &m, &error), STATUS_MISSING);
   assert_non_null(strstr(error.message, "'basalt'"));
@@ -158,7 +148,6 @@ TEST(a_name_gives_the_values) {
 TEST(another_material_drops_those_of_the_document) {
   static const char *const rows[] = {"target.material.density", "target.material.shear_modulus", "target.radius"};
   SCENE scene = NULL;
-  struct error error = {0};
   if (scene_parse(
           "custom",
           "engine: sph\ntarget: {radius: 3 cm, material: {name: custom, density: 3 g/cm^3, shear_modulus: 20 GPa,\n"
@@ -167,8 +156,8 @@ TEST(another_material_drops_those_of_the_document) {
           "off}}\n",
           &scene, &error))
     fail_msg("%s", error.message);
-  assert_int_equal(scene_set_text(scene, "target.material.shear_modulus", "2 GPa", &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "target.material.name", "ice", &error), STATUS_OK);
+  OK(scene_set_text(scene, "target.material.shear_modulus", "2 GPa", &error));
+  OK(scene_set_text(scene, "target.material.name", "ice", &error));
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     const struct field *row = field_find(scene->kind->inputs, rows[i], &error);
     assert_non_null(row);

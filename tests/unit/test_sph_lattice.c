@@ -1,7 +1,4 @@
 /* Lattices: numbers, neighbours, density sums, moments; periodic fits; irregular and graded points. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/kd_tree.h"
@@ -18,8 +15,7 @@ static const struct sph_shape brick = {.kind = SPH_SHAPE_BOX, .centre = {0.5, 0.
 
 static struct sph_points fill(const struct sph_shape *shape, struct sph_lattice lattice) {
   struct sph_points points;
-  struct error error = {0};
-  assert_int_equal(sph_lattice_fill(&lattice, shape, &points, &error), STATUS_OK);
+  OK(sph_lattice_fill(&lattice, shape, &points, &error));
   return points;
 }
 
@@ -317,7 +313,6 @@ TEST(irregular_points_are_even) {
 /* Largest spacing of a graded body over the uniform one; infinite where so many particles are refused. */
 static double coarsest_of(const struct sph_shape *shape, struct sph_grading grading, double particles) {
   struct sph_points p;
-  struct error error;
   const struct sph_lattice lattice = {.particles = particles, .seed = 3, .grading = grading};
   if (sph_lattice_fill(&lattice, shape, &p, &error))
     return INFINITY;
@@ -412,7 +407,6 @@ TEST(graded_points_keep_their_grading) {
   }
   assert_true(total / (double)p.n < 0.01);
   sph_lattice_empty(&p);
-  struct error error;
   given.growth = 0.5;
   assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = NAN, .grading = given}, &target, &p, &error),
                    STATUS_CONTENT);
@@ -440,7 +434,6 @@ TEST(absurd_lattices_are_refused) {
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     struct sph_points points = {.n = 77};
-    struct error error = {0};
     assert_int_equal(sph_lattice_fill(&cases[k].lattice, cases[k].shape, &points, &error), cases[k].code);
     if (!strstr(error.message, cases[k].says))
       fail_msg("'%s' does not say '%s'", error.message, cases[k].says);
@@ -466,7 +459,6 @@ TEST(thin_bodies_are_filled_or_refused) {
             if (kind == SPH_LATTICE_IRREGULAR && wanted > 100)
               continue;
             struct sph_points points;
-            struct error error = {0};
             const struct sph_lattice lattice = {.kind = kind, .particles = wanted, .turned = turned, .seed = 1};
             const status code = sph_lattice_fill(&lattice, &shapes[s], &points, &error);
             if (code) {

@@ -1,8 +1,5 @@
 /* Pairs move between lists so that most lists fill whole batches: no pair is lost or appears twice, and few lanes stay
  * empty. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
@@ -86,10 +83,9 @@ TEST(every_pair_is_met_once_and_batches_are_whole) {
     const size_t size = variant & 4 ? 400 : MOST + 1;
     const double periods[3] = {periodic && !odd ? SIDE : (double)NAN, NAN, periodic ? 4 * 3.6 : (double)NAN};
     OWNED struct cloud *c = cloud_make(odd);
-    struct error error = {0};
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 8 % 3], 1), 0);
     struct sph_neighbours *n = sph_neighbours_create(MOST, size, share, sph_pairs_kernels_choose());
-    assert_int_equal(sph_neighbours_find(n, MOST, c->x, c->y, c->z, c->reach, periods, 1, &error), STATUS_OK);
+    OK(sph_neighbours_find(n, MOST, c->x, c->y, c->z, c->reach, periods, 1, &error));
     for (size_t chunk = 0; chunk * size < MOST; chunk++) {
       const size_t first = chunk * size, own = MOST - first < size ? MOST - first : size;
       const double idle = check(c, periods, n, share, chunk, first, own);

@@ -1,9 +1,6 @@
 /* Bodies from shape files. A box as a mesh must equal a box: the same particles to rounding, distances, gaps and places
  * of impact. In bodies that only a mesh can describe, flaws are uniform, and a projectile starts outside of them. */
 #define CHECK_OWN_MAIN
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/mesh/mesh.h"
 #include "engine/random.h"
@@ -27,7 +24,6 @@ static struct sph_shape box, as_mesh, l_shape;
 
 static int set_up(void **state) {
   (void)state;
-  struct error error;
   if (mesh_files_add("box", box_file, strlen(box_file), &box_mesh, &error) ||
       mesh_files_add("L", l_file, strlen(l_file), &l_mesh, &error)) {
     print_error("%s\n", error.message);
@@ -42,10 +38,10 @@ static int set_up(void **state) {
   return 0;
 }
 
-static void near(double value, double expected, double error) {
-  if (!(fabs(value - expected) <= error))
+static void near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
     print_error("%.17g is not %.17g\n", value, expected);
-  assert_true(fabs(value - expected) <= error);
+  assert_true(fabs(value - expected) <= tolerance);
 }
 
 static void draw(uint64_t item, double scale, double p[3]) {
@@ -100,9 +96,9 @@ TEST(same_gaps_as_a_box) {
       together++;
       continue;
     }
-    const double error = i % 4 == 3 ? 1e-4 * 0.04 : 2e-6 * 0.04; /* the search between meshes is coarser */
-    near(gap, of_box, error);
-    near(sph_shape_gap(other, &as_mesh), gap, error);
+    const double tolerance = i % 4 == 3 ? 1e-4 * 0.04 : 2e-6 * 0.04; /* the search between meshes is coarser */
+    near(gap, of_box, tolerance);
+    near(sph_shape_gap(other, &as_mesh), gap, tolerance);
     apart++;
   }
   assert_true(apart > DRAWS / 4 && together > DRAWS / 20);
@@ -115,13 +111,12 @@ TEST(same_gaps_as_a_box) {
 TEST(same_particles_as_a_box) {
   for (uint64_t seed = 1; seed <= 6; seed++) {
     struct sph_points of_box, of_mesh;
-    struct error error;
     const struct sph_lattice lattice = {.kind = seed % 2 ? SPH_LATTICE_HEXAGONAL : SPH_LATTICE_CUBIC,
                                         .particles = 500 * (double)seed,
                                         .turned = true,
                                         .seed = seed};
-    assert_int_equal(sph_lattice_fill(&lattice, &box, &of_box, &error), STATUS_OK);
-    assert_int_equal(sph_lattice_fill(&lattice, &as_mesh, &of_mesh, &error), STATUS_OK);
+    OK(sph_lattice_fill(&lattice, &box, &of_box, &error));
+    OK(sph_lattice_fill(&lattice, &as_mesh, &of_mesh, &error));
     assert_int_equal(of_box.n, of_mesh.n);
     near((double)of_mesh.n, lattice.particles, 0.005 * lattice.particles);
     for (size_t i = 0; i < of_box.n; i++) {
@@ -149,9 +144,7 @@ TEST(an_l_is_filled) {
                                                   .growth = NAN};
     SPH_PARTICLES *p = NULL;
     struct sph_range range;
-    struct error error;
-    if (sph_bodies_make(&body, 1, 0, &p, &range, &error))
-      fail_msg("%s", error.message);
+    OK(sph_bodies_make(&body, 1, 0, &p, &range, &error));
     double mass = 0, third[3] = {0};
     for (size_t i = 0; i < p->n; i++) {
       const double at[3] = {p->x[i], p->y[i], p->z[i]};
@@ -187,19 +180,16 @@ TEST(flaws_are_uniform) {
 TEST(projectile_starts_clear) {
   char text[512];
   SCENE scene = NULL;
-  struct error error;
   snprintf(text, sizeof text,
            "engine: sph\nkind: impact\ntarget: {shape: mesh, material: basalt, mesh: {file: %s, unit: 1 cm}}\n"
            "projectile: {shape: sphere, radius: 4 mm, material: basalt}\n"
            "impact: {speed: 100 m/s, angle: 60 deg, gap: 0.5 mm}\nfidelity: {particles: 2000}\n",
            l_mesh->hash);
-  if (scene_parse("L", text, &scene, &error))
-    fail_msg("%s", error.message);
-  if (scene_check(scene, &error))
-    fail_msg("%s", error.message);
+  OK(scene_parse("L", text, &scene, &error));
+  OK(scene_check(scene, &error));
   struct sph_shape shape[2];
   double flight[3];
-  assert_int_equal(sph_derived_aim(scene->inputs, shape, flight, &error), STATUS_OK);
+  OK(sph_derived_aim(scene->inputs, shape, flight, &error));
   assert_true(sph_shape_gap(&shape[0], &shape[1]) >= 0.5e-3 * (1 - 1e-9));
   near(flight[2], -cos(M_PI / 3), 1e-12);
   near(sph_derived_target_mass(scene->inputs), 2700 * 3e-6, 1e-12);
@@ -222,7 +212,6 @@ TEST(file_is_needed) {
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     char text[512];
     struct scene *scene = NULL;
-    struct error error = {0};
     snprintf(text, sizeof text, "engine: sph\ntarget: {%s}\n", parts[i][0]);
     status code = scene_parse("a", text, &scene, &error);
     if (!code)

@@ -1,7 +1,4 @@
 /* Lists of neighbours: against brute force, shared by several particles, invalid after motion, bounded in memory. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
@@ -25,13 +22,12 @@ TEST(memory_does_not_grow_with_the_extent) {
   size_t bytes[2];
   for (int flung = 0; flung < 2; flung++) {
     struct sph_pairs *pairs;
-    struct error error = {0};
     for (size_t i = 0; flung && i < c->n; i += 3)
       for (int k = 0; k < 3; k++)
         c->a[k][i] *= 1e11;
     const size_t before = allocated();
-    assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
-    assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+    OK(sph_pairs_create(c->n, &usual, &pairs, &error));
+    OK(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error));
     bytes[flung] = (allocated() - before) / c->n;
     sph_pairs_free(pairs);
   }
@@ -60,7 +56,6 @@ TEST(lists_equal_brute_force) {
         c->a[k][40] = c->a[k][41], c->a[k][1200] = c->a[k][3];
     }
     OWNED_BY(reference_sph_lists_free) struct reference_sph_lists lists;
-    struct error error = {0};
     const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
     setenv("CLAST_CPU", classes[variant % 3], 1);
     assert_int_equal(reference_sph_lists_make(c->n, chunks[variant / 2 % 3], place, c->a[3], length, 1 + variant / 12,
@@ -100,10 +95,8 @@ TEST(shared_lists_join_those_of_their_members) {
       swap_particles(c, i, (size_t)((noise(&seed) + 0.5) * (double)i));
     c->a[1][11] = 1e9, c->a[1][26] = -1e9, c->a[0][27] = 1e15, c->a[0][500] = NAN, c->n -= 1;
     OWNED_BY(reference_sph_lists_free) struct reference_sph_lists single;
-    struct error error = {0};
     const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
-    assert_int_equal(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error),
-                     STATUS_OK);
+    OK(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error));
     struct sph_neighbours *neighbours = sph_neighbours_create(c->n, CHUNK, share, sph_pairs_kernels_choose());
     uint32_t start[CHUNK + 1], count[CHUNK];
     struct sph_neighbour_lists lists = {.start = start, .count = count};
@@ -146,7 +139,6 @@ TEST(shared_lists_join_those_of_their_members) {
 TEST(thin_periodic_boxes_are_refused) {
   OWNED struct cloud *c = cloud_make(4, 1, false, 4);
   struct reference_sph_lists lists;
-  struct error error = {0};
   const double length[3] = {NAN, 4, NAN}, *const place[3] = {c->a[0], c->a[1], c->a[2]};
   assert_int_equal(reference_sph_lists_make(c->n, 64, place, c->a[3], length, 1, &lists, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "too thin"));
@@ -156,9 +148,8 @@ TEST(thin_periodic_boxes_are_refused) {
 TEST(lists_wear_out_with_the_slack) {
   OWNED struct cloud *c = cloud_make(6, 1, false, 5);
   struct sph_pairs *pairs;
-  struct error error = {0};
-  assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
-  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+  OK(sph_pairs_create(c->n, &usual, &pairs, &error));
+  OK(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error));
   const double x = c->a[0][7], h = c->a[3][7];
   c->a[0][7] = x + 0.9 * c->slack[7];
   assert_true(fabs(slack_of(c, pairs) - 0.1 * c->slack[7]) < 1e-14);
@@ -175,7 +166,6 @@ TEST(lists_wear_out_with_the_slack) {
 TEST(float_takes_so_many_particles) {
   struct sph_pair_options options = usual;
   struct sph_pairs *pairs;
-  struct error error = {0};
   options.fidelity.precision = SPH_FLOAT;
   assert_int_equal(sph_pairs_create((size_t)1 << 28, &options, &pairs, &error), STATUS_CONTENT);
   assert_null(pairs);

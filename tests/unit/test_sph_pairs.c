@@ -1,8 +1,5 @@
 /* The sums of the pair loop: kernels of every CPU class and precision against plain C, conservation, and fields whose
  * gradient is known. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/pairs/pairs.h"
 #include "tests/bench/reference_sph.h"
@@ -55,11 +52,10 @@ static struct sph_pair_sums sums_of(struct summed *s) {
 
 static struct summed *sum(const struct cloud *c, const struct sph_pair_options *options) {
   struct sph_pairs *pairs;
-  struct error error = {0};
   struct summed *s = calloc(1, sizeof *s);
-  assert_int_equal(sph_pairs_create(c->n, options, &pairs, &error), STATUS_OK);
+  OK(sph_pairs_create(c->n, options, &pairs, &error));
   assert_true(slack_of(c, pairs) < 0);
-  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+  OK(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error));
   assert_true(slack_of(c, pairs) >= 0);
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
@@ -95,7 +91,6 @@ static void compare(const struct cloud *c, const struct summed *s, const struct 
 static struct summed *reference(const struct cloud *c, const struct sph_pair_options *options) {
   struct summed *s = calloc(1, sizeof *s);
   struct reference_sph_lists lists;
-  struct error error = {0};
   const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
   double *artificial[6], *stress[6];
   for (int k = 0; k < 6; k++)
@@ -108,8 +103,7 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
     for (int k = 0; k < 6; k++)
       artificial[k][i] = r[k];
   }
-  assert_int_equal(reference_sph_lists_make(c->n, c->n, place, c->a[3], options->periodic, 1, &lists, &error),
-                   STATUS_OK);
+  OK(reference_sph_lists_make(c->n, c->n, place, c->a[3], options->periodic, 1, &lists, &error));
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
   reference_sph_sum(c->n, lists.start, lists.count, lists.j, options, &f, (const double *const *)stress,
@@ -443,20 +437,19 @@ TEST(not_finite_does_no_harm) {
   OWNED struct cloud *c = cloud_make(10, 1, true, 13);
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
   struct sph_pairs *pairs;
-  struct error error = {0};
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
     OWNED struct summed *s = calloc(1, sizeof *s);
     options.fidelity.precision = precision;
-    assert_int_equal(sph_pairs_create(c->n, &options, &pairs, &error), STATUS_OK);
+    OK(sph_pairs_create(c->n, &options, &pairs, &error));
     struct sph_pair_fields f = fields_of(c);
     struct sph_pair_sums sums = sums_of(s);
-    assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+    OK(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error));
     for (int k = 0; k < 4; k++) {
       const double x = c->a[k][5 + k];
       c->a[k][5 + k] = bad[k];
       assert_true(slack_of(c, pairs) < 0);
-      assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+      OK(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error));
       sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums);
       c->a[k][5 + k] = x;
     }
@@ -558,9 +551,8 @@ static double distance2(const struct cloud *c, size_t i, size_t j) {
 /* Every pair of different bodies within the support is in the rows of both, once. */
 static void check_foreign(const struct cloud *c, const struct sph_pair_options *options) {
   struct sph_pairs *pairs;
-  struct error error = {0};
-  assert_int_equal(sph_pairs_create(c->n, options, &pairs, &error), STATUS_OK);
-  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+  OK(sph_pairs_create(c->n, options, &pairs, &error));
+  OK(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error));
   const struct sph_foreign *f = sph_pairs_foreign(pairs);
   size_t row = 0;
   for (size_t i = 0; i < c->n; i++) {

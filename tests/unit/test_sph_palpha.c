@@ -1,7 +1,6 @@
 /* P-alpha: crush curves by their values, all derivatives against finite differences, the implicit update against the
  * rate form of the papers integrated finely (written here again), paths of loading and unloading, jumps, the solid's
  * limit. */
-#include <math.h>
 
 #include "engine/random.h"
 #include "engine/sph/material/material.h"
@@ -38,9 +37,7 @@ static const struct sph_palpha_material porous_ice = {.distention = 1.5,
 
 static struct sph_palpha_law law_of(const struct sph_palpha_material *given, const struct sph_material *solid) {
   struct sph_palpha_law law;
-  struct error error = {0};
-  if (sph_palpha_prepare(given, solid, &law, &error) != STATUS_OK)
-    fail_msg("%s", error.message);
+  OK(sph_palpha_prepare(given, solid, &law, &error));
   return law;
 }
 
@@ -455,7 +452,6 @@ TEST(soft_pores_follow_their_branch) {
 
 TEST(refused) {
   struct sph_palpha_law law;
-  struct error error;
   struct sph_palpha_material bad[13];
   for (int i = 0; i < 13; i++)
     bad[i] = i < 6 ? porous_aluminium : pumice;

@@ -347,7 +347,6 @@ TEST(refused) {
   *bad = porous_basalt;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;
-  struct error error;
   bad->solid_pressure = 1;
   assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "solid_pressure"));

@@ -10,7 +10,6 @@
 TEST(more_than_memory_is_refused) {
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=1900000000");
   void *run = &run;
-  struct error error = {0};
   assert_int_equal(sph_engine.prepare(&inputs, 1, &run, &error), STATUS_MEMORY);
   assert_null(run);
   assert_non_null(strstr(error.message, "fidelity.particles"));
@@ -30,11 +29,10 @@ static size_t address_space(void) {
 TEST(memory_that_runs_out_is_no_result) {
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=4000");
   struct rlimit before, tight;
-  struct error error = {0};
   bool finished = false;
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
-  assert_int_equal(sph_engine.step(run, 5, &finished, &error), STATUS_OK);
+  OK(sph_engine.step(run, 5, &finished, &error));
   run->system->highest_h = 1e3;
   for (size_t i = 0; i < run->system->n; i++)
     run->system->c.h[i] *= 10; /* nearly all pairs: some 30 MB of lists */
@@ -58,7 +56,6 @@ TEST(overlapping_bodies_are_refused) {
   struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300");
   inputs.collision.gap = 1e-6;
   void *run;
-  struct error error = {0};
   assert_int_equal(sph_engine.prepare(&inputs, 1, &run, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "overlap"));
 }
@@ -74,7 +71,6 @@ TEST(empty_layers_are_refused) {
                 "sides.depth"}};
   for (int c = 0; c < 2; c++) {
     void *run;
-    struct error error = {0};
     assert_int_equal(sph_engine.prepare(&cases[c].inputs, 1, &run, &error), STATUS_CONTENT);
     assert_true(strstr(error.message, cases[c].word) && strstr(error.message, "no particle"));
   }
@@ -97,7 +93,6 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
   const char *const overrides[] = {"fidelity.particles=150", "fidelity.projectile_spacing=0.5", a, b, c, d, NULL};
   struct sph_inputs inputs = run_case(scene, overrides).sph;
   void *made = NULL;
-  struct error error = {0};
   bool finished = false;
   if (sph_engine.prepare(&inputs, 1, &made, &error)) {
     assert_true(error.status == STATUS_CONTENT && strlen(error.message) > 20);
@@ -105,8 +100,8 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
   }
   struct ran ran = {0};
   for (int k = 0; k < (SANITIZED ? 10 : 40) && !finished; k++) /* at most 4000 steps of 170 particles */
-    assert_int_equal(sph_engine.step(made, 100, &finished, &error), STATUS_OK);
-  assert_int_equal(sph_engine.finish(made, &ran.outcome, &ran.results, &ran.fragments, &ran.count, &error), STATUS_OK);
+    OK(sph_engine.step(made, 100, &finished, &error));
+  OK(sph_engine.finish(made, &ran.outcome, &ran.results, &ran.fragments, &ran.count, &error));
   sph_engine.free(made);
   bool fine = ran.outcome.state == OUTCOME_COMPLETED || ran.outcome.state == OUTCOME_END_TIME;
   if (finished && !fine && !strlen(ran.outcome.message))
@@ -156,7 +151,6 @@ TEST(ends_of_the_ranges) {
                                                            "projectile.radius=3 cm", NULL})
                                 .sph;
   void *run = NULL;
-  struct error error = {0};
   if (sph_engine.prepare(&alone, 1, &run, &error))
     fail_msg("one particle against another: %s", error.message);
   sph_engine.free(run);

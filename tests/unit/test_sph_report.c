@@ -101,7 +101,6 @@ TEST(figures_by_hand) {
   for (int c = 0; c < 3; c++) {
     struct sph_run *run;
     struct ran ran = {0};
-    struct error error = {0};
     double energy[2] = {0, 0}, kinetic[2] = {0, 0}, momentum[2][3] = {{0}}, scale[2] = {0, 0}, translation = 0,
            change = 0, turning[2] = {0, 0};
     assert_int_equal(sph_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
@@ -124,8 +123,7 @@ TEST(figures_by_hand) {
     const struct sph_ledger ledger = sph_system_ledger(run->system);
     const double input = kinetic[0] + fabs(ledger.work_of_held),
                  drift = fabs(energy[1] - energy[0] - ledger.work_of_held);
-    if (sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error))
-      fail_msg("%s", error.message);
+    OK(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error));
     for (size_t k = 0; k < ran.count; k++)
       for (int d = 0; d < 3; d++)
         translation += 0.5 * ran.fragments[k].mass * pow(ran.fragments[k].velocity[d], 2);
@@ -213,7 +211,6 @@ TEST(rebound_counts_in_the_enhancement) {
                                             "target.material.yield_stress=off", "stop.end_time=0.3 ms");
   struct sph_run *run;
   struct ran ran = {0};
-  struct error error = {0};
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
   frame_advance(&run->frame, UINT64_MAX);
   const struct sph_particles *now = sph_run_read(run);
@@ -221,15 +218,13 @@ TEST(rebound_counts_in_the_enhancement) {
   for (int b = 0; b < 2; b++)
     for (size_t i = run->range[b].first; i < run->range[b].first + run->range[b].n; i++)
       momentum[b] += now->mass[i] * now->vz[i];
-  if (sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error))
-    fail_msg("%s", error.message);
+  OK(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error));
   const double brought = run->range[1].mass * 40;
   assert_true(momentum[1] > 0.1 * brought && ran.results.sph.ejecta.momentum == 0);
   assert_true(fabs(ran.results.sph.ejecta.momentum_enhancement - -momentum[0] / brought) < 0.02);
   free(ran.fragments);
   run->inputs.crater.escape_speed = 1000; /* all of it falls back */
-  assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error),
-                   STATUS_OK);
+  OK(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error));
   assert_true(ran.results.sph.ejecta.momentum_enhancement == 1);
   free(ran.fragments);
   sph_run_free(run);

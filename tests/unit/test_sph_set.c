@@ -1,5 +1,4 @@
 /* Sets of columns and modules: of any size, also beyond a word. */
-#include <string.h>
 
 #include "engine/sph/modules/module.h"
 #include "tests/support/check.h"

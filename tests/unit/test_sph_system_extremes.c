@@ -120,7 +120,6 @@ TEST(lost) {
 TEST(refused) {
   struct collision c = collide(1000);
   struct sph_system *s = NULL;
-  struct error error;
   struct sph_body_physics lacking[2] = {c.physics[0], c.physics[1]};
   lacking[1].material.elastic.shear_modulus = NAN;
   assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters.in, &c.parameters.domain, &s, &error),

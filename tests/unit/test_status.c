@@ -15,7 +15,6 @@ TEST(values_are_sysexits) {
 }
 
 TEST(fail_fills_and_returns) {
-  struct error error = {0};
   assert_int_equal(status_fail(&error, STATUS_IO, "cannot write '%s'", "a.db"), STATUS_IO);
   assert_int_equal(error.status, STATUS_IO);
   assert_string_equal(error.message, "cannot write 'a.db'");

@@ -11,8 +11,6 @@
 
 #define REMEDY "if that is on purpose: cmake --build --preset release --target schemas, and commit the file"
 
-static struct error error;
-
 static sqlite3 *run_text(const char *sql) {
   sqlite3 *db = NULL;
   assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
@@ -48,8 +46,8 @@ static char *schema_text(void) {
   sqlite3 *db = NULL;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
-  assert_int_equal(store_open_writer(fixture_path(path, "schema"), &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "schema"), &store, NULL, 0, &error));
+  OK(store_close(store, &error));
   assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
   fprintf(out,
           "-- The store of clast: schema of version %d.\n"
@@ -163,8 +161,7 @@ TEST(names_are_those_of_the_tables) {
 TEST(every_column_has_a_name_of_its_own) {
   for (size_t i = 0; i < schema_table_count(); i++) {
     const struct schema_table table = schema_table_at(i);
-    if (schema_check_names(&table, &error) != STATUS_OK)
-      fail_msg("%s", error.message);
+    OK(schema_check_names(&table, &error));
   }
 }
 
@@ -194,10 +191,10 @@ TEST(inputs_that_differ_by_case_get_two_columns) {
   char path[64];
   struct store *store = NULL;
   sqlite3 *db = NULL;
-  assert_int_equal(store_open_writer(fixture_path(path, "case"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "case"), &store, NULL, 0, &error));
   for (size_t i = 0; i < 2; i++)
-    assert_int_equal(store_add_axis(store, field_find(inputs, paths[i], &error), "", &error), STATUS_OK);
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+    OK(store_add_axis(store, field_find(inputs, paths[i], &error), "", &error));
+  OK(store_close(store, &error));
   assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
   assert_int_equal(integer(db, "SELECT count(DISTINCT lower(column_name)) FROM axis"), 2);
   sqlite3_close(db);
@@ -218,7 +215,7 @@ TEST(one_column_of_two_rows_is_refused) {
 
 TEST(canned_queries_know_the_real_columns) {
   struct store *store = NULL;
-  assert_int_equal(store_open_reader("test-store-schema.db", &store, &error), STATUS_OK);
+  OK(store_open_reader("test-store-schema.db", &store, &error));
   for (size_t i = 0; i < ask_canned_count(); i++) {
     const struct query_canned *canned = ask_canned_at(i);
     const struct query_parameter parameter = {.name = canned->parameters, .value = "1"};

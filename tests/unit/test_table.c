@@ -1,7 +1,4 @@
 /* One set of rows, three formats: they agree, and the hard cells (NaN, quotes, bad UTF-8, many rows) come out right. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "campaign/terminal/table.h"
 #include "schemas/csv.h"
@@ -211,7 +208,6 @@ TEST(test_full_disk) {
   table_column(table, "x", NULL);
   for (int i = 0; i < 10000; i++)
     table_integer(table, i);
-  struct error error;
   assert_true(table_broken(table));
   assert_int_equal(table_end(table, &error), STATUS_IO);
   assert_non_null(strstr(error.message, "No space"));

@@ -1,10 +1,6 @@
 /* Voronoi cells against libqhull_r: areas and common sides to 1e-12 over seeds, sizes and disorders; and the properties
  * of any tessellation of a body: it fills the rectangle, neighbours share vertices to the last bit, disorder 0 is the
  * square lattice. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include <libqhull_r/qhull_ra.h>
@@ -413,7 +409,6 @@ TEST(ten_thousand_cells_in_time) {
 
 TEST(nonsense_is_refused) {
   struct dem_tessellation *t;
-  struct error error = {0};
   struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 1e-9, .disorder = 1, .radius = 1};
   assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_CONTENT);
   assert_null(t);

@@ -1,7 +1,4 @@
 /* Texts made of parts stay in their arrays, end behind a whole character, and show no more digits than people read. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "schemas/text.h"
 #include "tests/support/check.h"

@@ -1,5 +1,4 @@
 /* Threads that the system refuses: fewer are used, and the process goes on. */
-#include <stdio.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

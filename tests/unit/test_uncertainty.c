@@ -1,6 +1,4 @@
 /* The two errors of a mean in words. */
-#include <math.h>
-#include <stdio.h>
 
 #include "campaign/terminal/table.h"
 #include "tests/support/check.h"

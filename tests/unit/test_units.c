@@ -1,8 +1,5 @@
 /* Units: known conversions (exact doubles: a decimal shift must not round), every error message to the letter, and the
  * agreement of spellings that mean the same. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "schemas/field.h"
 #include "schemas/unit.h"
@@ -79,7 +76,6 @@ TEST(values_are_exact) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     double si = -1;
-    struct error error = {0};
     status code = unit_read(cases[i].text, cases[i].unit, &si, &error);
     if (code || si != cases[i].si)
       wrong++, print_error("'%s' in %s: %.17g, expected %.17g; %s\n", cases[i].text, cases[i].unit, si, cases[i].si,
@@ -163,7 +159,6 @@ TEST(messages_are_these) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     double si = 42;
-    struct error error = {0};
     status code = unit_read(cases[i].text, cases[i].unit, &si, &error);
     if (code != STATUS_CONTENT || strcmp(error.message, cases[i].message) != 0)
       wrong++,

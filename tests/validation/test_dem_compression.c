@@ -11,9 +11,7 @@ struct figures {
 
 static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
   struct dem_run *run;
-  struct error error = {0};
-  if (dem_run_create(inputs, seed, &run, &error))
-    fail_msg("%s", error.message);
+  OK(dem_run_create(inputs, seed, &run, &error));
   while (!run->state.frame.finished)
     frame_advance(&run->frame, 10000);
   assert_int_equal(run->state.frame.outcome_state, OUTCOME_COMPLETED);

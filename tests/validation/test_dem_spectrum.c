@@ -75,12 +75,10 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
     struct dem_results results;
     struct fragment *fragments;
     size_t n;
-    struct error error = {0};
-    if (dem_run_create(inputs, r + 1, &run, &error))
-      fail_msg("%s", error.message);
+    OK(dem_run_create(inputs, r + 1, &run, &error));
     while (!run->state.frame.finished)
       frame_advance(&run->frame, 10000);
-    assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &n, &error), STATUS_OK);
+    OK(dem_report_finish(run, &outcome, &results, &fragments, &n, &error));
     if (outcome.state > OUTCOME_END_TIME) { /* a failed run is counted, and left out as in any campaign */
       print_message("seed %zu: %s\n", r + 1, outcome.message);
       c.failed++;
@@ -140,10 +138,10 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
 static void gate(const struct spectrum_case *c) {
   for (int m = 0; m < 2; m++)
     for (int w = 0; w < 2; w++) {
-      double error = c->beta[m][w].standard_error, room = 0.3 + (run_case_full() ? 0 : 2 * error);
-      if (!(error < 0.3 && fabs(c->beta[m][w].estimate - 2) < room))
-        fail_msg("method %d, window %d: beta %.3f +- %.3f is not 2.0 +- %.2f", m, w, c->beta[m][w].estimate, error,
-                 room);
+      double standard_error = c->beta[m][w].standard_error, room = 0.3 + (run_case_full() ? 0 : 2 * standard_error);
+      if (!(standard_error < 0.3 && fabs(c->beta[m][w].estimate - 2) < room))
+        fail_msg("method %d, window %d: beta %.3f +- %.3f is not 2.0 +- %.2f", m, w, c->beta[m][w].estimate,
+                 standard_error, room);
     }
   assert_int_equal(c->failed, 0);
   assert_true(c->energy_error <

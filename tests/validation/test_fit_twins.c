@@ -1,6 +1,5 @@
 /* Twin experiments: inputs drawn from the priors, one specimen "measured" by the model itself, and a fit that does not
  * know them. The 90 % intervals must hold the inputs in about 90 of 100 cases. See fit_twins.md. */
-#include <stdio.h>
 
 #include "tests/support/check.h"
 #include "tests/support/inference_cases.h"
@@ -53,7 +52,6 @@ static void run_twins(size_t inputs, size_t outputs, case_model model, bool coun
                       struct count *count) {
   static struct case_fit fit;
   const bool bounded[INFERENCE_INPUTS] = {true, true, true, true};
-  struct error error;
   *count = (struct count){.cases = number};
   for (size_t c = 0; c < number; c++) {
     struct posterior_datum data[INFERENCE_OUTPUTS];
@@ -67,7 +65,7 @@ static void run_twins(size_t inputs, size_t outputs, case_model model, bool coun
                                          .specimens = 1};
     }
     fit = (struct case_fit){.inputs = inputs, .outputs = outputs, .own_seeds = own_seeds};
-    assert_int_equal(case_solve(&fit, model, data, bounded, c + 1, &error), STATUS_OK);
+    OK(case_solve(&fit, model, data, bounded, c + 1, &error));
     for (size_t i = 0; i < inputs; i++) {
       const double low = gsl_cdf_ugaussian_P(posterior_quantile(&fit.posterior, i, 0.05));
       const double high = gsl_cdf_ugaussian_P(posterior_quantile(&fit.posterior, i, 0.95));

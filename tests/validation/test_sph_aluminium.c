@@ -24,9 +24,7 @@
 
 static struct sph_run *start(const struct sph_inputs *inputs) {
   struct sph_run *run;
-  struct error error = {0};
-  if (sph_run_create(inputs, 1, &run, &error))
-    fail_msg("%s", error.message);
+  OK(sph_run_create(inputs, 1, &run, &error));
   return run;
 }
 

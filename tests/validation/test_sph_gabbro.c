@@ -82,9 +82,7 @@ static struct sph_inputs inputs_of(const struct rock *rock) {
  */
 static double add_run(const struct sph_inputs *inputs, uint64_t seed, size_t seeds, struct cratered *c) {
   struct sph_run *run;
-  struct error error = {0};
-  if (sph_run_create(inputs, seed, &run, &error))
-    fail_msg("%s", error.message);
+  OK(sph_run_create(inputs, seed, &run, &error));
   while (!run->state.frame.finished)
     frame_advance(&run->frame, 1000);
   assert_int_equal(run->state.frame.outcome_state, OUTCOME_END_TIME); /* damage grew within the last two crossings */

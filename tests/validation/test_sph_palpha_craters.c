@@ -4,10 +4,6 @@
  *
  * Quick: 2 seeds. CLAST_FULL=1: 10 seeds. Each seed is shown, and the ratio with its
  * interval. The criterion applies to the mean, not to every seed (a seed with the opposite result is a finding). */
-#include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/fragments.h"
 #include "engine/outcome.h"
@@ -32,7 +28,6 @@ struct result {
 static struct result run(const char *name, uint64_t seed, const char *particles, bool even) {
   struct result r = {0};
   struct scene *scene;
-  struct error error = {0};
   void *made = NULL;
   OWNED struct fragment *fragments = NULL;
   size_t count;
@@ -45,9 +40,8 @@ static struct result run(const char *name, uint64_t seed, const char *particles,
       scene_check(scene, &error) || scene->kind->prepare(scene->inputs, seed, &made, &error))
     fail_msg("%s: %s", name, error.message);
   while (!finished)
-    assert_int_equal(scene->kind->step(made, 1000, &finished, &error), STATUS_OK);
-  if (scene->kind->finish(made, &r.outcome, &r.sph, &fragments, &count, &error))
-    fail_msg("%s", error.message);
+    OK(scene->kind->step(made, 1000, &finished, &error));
+  OK(scene->kind->finish(made, &r.outcome, &r.sph, &fragments, &count, &error));
   struct sph_run *inside = made;
   struct sph_crater_options options = sph_report_crater_options(inside);
   r.layers = sph_crater_profile(inside->start, inside->now, &options, r.axis, sizeof r.axis / sizeof r.axis[0]);
@@ -91,9 +85,10 @@ TEST(ice) {
     assert_true(last > 1.45 && last > lowest);
     assert_true(porous.sph.palpha.compaction.mass_fraction < 0.05); /* alpha = 1 near the crater only */
   }
-  double mean = sum / seeds, error = seeds > 1 ? sqrt(fmax(0, squares / seeds - mean * mean) / (seeds - 1)) : 0;
+  double mean = sum / seeds,
+         standard_error = seeds > 1 ? sqrt(fmax(0, squares / seeds - mean * mean) / (seeds - 1)) : 0;
   print_message("ejected mass, porous over solid: %.3f (%.3f to %.3f, two standard errors, %d seeds)\n", exp(mean),
-                exp(mean - 2 * error), exp(mean + 2 * error), seeds);
+                exp(mean - 2 * standard_error), exp(mean + 2 * standard_error), seeds);
   assert_true(exp(mean) < 0.67); /* less than its lower density alone (1/1.5) would give */
 }
 

@@ -37,12 +37,10 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
   struct fragment *fragments;
   struct sph_fragments pieces;
   size_t count;
-  struct error error = {0};
-  if (sph_run_create(inputs, seed, &run, &error))
-    fail_msg("%s", error.message);
+  OK(sph_run_create(inputs, seed, &run, &error));
   while (!run->state.frame.finished)
     frame_advance(&run->frame, 1000);
-  assert_int_equal(sph_report_finish(run, &s.outcome, &s.results, &fragments, &count, &error), STATUS_OK);
+  OK(sph_report_finish(run, &s.outcome, &s.results, &fragments, &count, &error));
   free(fragments);
   assert_int_equal(sph_report_fragments(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces,
                                         &error),
@@ -120,9 +118,7 @@ TEST(damage_on_its_way) {
   struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.particles=3000");
   for (uint64_t seed = 1; seed <= SEEDS; seed++) {
     struct sph_run *run;
-    struct error error = {0};
-    if (sph_run_create(&inputs, seed, &run, &error))
-      fail_msg("%s", error.message);
+    OK(sph_run_create(&inputs, seed, &run, &error));
     for (int k = 0; k < 2; k++) {
       while (!run->state.frame.finished && run->system->now.time < times[k])
         frame_advance(&run->frame, 1);

@@ -2,11 +2,6 @@
  * outlive it. */
 #pragma once
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/dem/step/system.h"
 #include "engine/dem/step/system_layout.h"
 #include "tests/support/check.h"
@@ -72,17 +67,13 @@ static inline struct dem_tessellation *fixture_disc(double radius, double spacin
                                       .radius = radius,
                                       .seed = seed};
   struct dem_tessellation *t = NULL;
-  struct error error = {0};
-  if (dem_tessellation_make(&lattice, &t, &error) != STATUS_OK)
-    fail_msg("%s", error.message);
+  OK(dem_tessellation_make(&lattice, &t, &error));
   return t;
 }
 
 static inline struct dem_system *fixture_create(const struct dem_tessellation *t, const struct dem_inputs *in) {
   struct dem_system *system = NULL;
-  struct error error = {0};
-  if (dem_system_create(t, in, 0, &system, &error) != STATUS_OK)
-    fail_msg("%s", error.message);
+  OK(dem_system_create(t, in, 0, &system, &error));
   return system;
 }
 

@@ -70,7 +70,7 @@ TEST(damped_impact) {
 /* Corner on side, spinning, off centre: the conservative law returns all energy, up to the square of the step. */
 TEST(oblique_impact_conserves) {
   DEM_TESSELLATION *t = fixture_squares(2, 1, h, 0.5 * h, false);
-  double error[2];
+  double deviation[2];
   for (int fine = 0; fine < 2; fine++) {
     struct dem_inputs in = fixture_inputs();
     in.fidelity.time_step = fine ? 2.5e-8 : 1e-7;
@@ -87,11 +87,11 @@ TEST(oblique_impact_conserves) {
     }
     assert_true(deepest > 0.05 * before);
     assert_true(s->c.vx[0] < 0.0);
-    error[fine] = fabs(dem_system_ledger(s).kinetic / before - 1.0);
+    deviation[fine] = fabs(dem_system_ledger(s).kinetic / before - 1.0);
     fixture_near(dem_system_ledger(s).contact, 0.0, 0.0, "apart again");
   }
-  print_message("          energy error %.1e at 0.1 us, %.1e at 0.025 us\n", error[0], error[1]);
-  assert_true(error[0] < 3e-4 && error[1] < 3e-4);
+  print_message("          energy error %.1e at 0.1 us, %.1e at 0.025 us\n", deviation[0], deviation[1]);
+  assert_true(deviation[0] < 3e-4 && deviation[1] < 3e-4);
 }
 
 /* A square slides on another: Coulomb's force is mu times the normal force, against the slip, and the damping and
@@ -99,7 +99,7 @@ TEST(oblique_impact_conserves) {
 TEST(friction_takes_energy_out) {
   DEM_TESSELLATION *t = fixture_squares(2, 1, h, 1e-6 * h, false);
   for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++) {
-    double error[2];
+    double deviation[2];
     for (int fine = 0; fine < 2; fine++) {
       struct dem_inputs in = fixture_inputs();
       in.contact.law = law;
@@ -125,11 +125,11 @@ TEST(friction_takes_energy_out) {
       assert_true(l.damping > 0.0 && l.friction > 0.0 && l.kinetic < kinetic);
       fixture_near(s->c.vx[0] + s->c.vx[1], 0.0, 1e-13, "momentum");
       fixture_near(s->c.vy[0] + s->c.vy[1], 0.0, 1e-13, "momentum");
-      error[fine] = fabs(fixture_total(l) / before - 1.0);
+      deviation[fine] = fabs(fixture_total(l) / before - 1.0);
     }
-    print_message("          law %d: ledger open by %.1e at 40 ns, %.1e at 10 ns\n", law, error[0], error[1]);
-    assert_true(error[1] < 2e-3 &&
-                error[1] < 0.6 * error[0]); /* powers are booked at predicted velocities: first order */
+    print_message("          law %d: ledger open by %.1e at 40 ns, %.1e at 10 ns\n", law, deviation[0], deviation[1]);
+    assert_true(deviation[1] < 2e-3 &&
+                deviation[1] < 0.6 * deviation[0]); /* powers are booked at predicted velocities: first order */
   }
 }
 

@@ -166,10 +166,9 @@ static const struct variant variants[] = {{"bonded", .bonded_contact = true},
 static double compare(const struct variant *v, int law, double size, double turned, uint64_t seed) {
   const double cell = 0.01;
   struct dem_tessellation *t = NULL;
-  struct error error = {0};
   const struct dem_lattice lattice =
       {.outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
-  assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
+  OK(dem_tessellation_make(&lattice, &t, &error));
   assert_int_equal(t->cell_count, GRAINS);
   if (v->no_bonds)
     t->pair_count = 0;
@@ -257,10 +256,9 @@ TEST(damping_and_friction_as_written) {
       for (uint64_t seed = 1; seed <= 12; seed++) {
         const double cell = 0.01;
         struct dem_tessellation *t = NULL;
-        struct error error = {0};
         const struct dem_lattice lattice =
             {.outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
-        assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
+        OK(dem_tessellation_make(&lattice, &t, &error));
         if (!bonded)
           t->pair_count = 0;
         struct model m = {.t = t, .in = fixture_inputs()};
@@ -347,12 +345,12 @@ TEST(all_forces_are_gradients) {
         for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
           for (uint64_t seed = 1; seed <= 4; seed++) {
             const double turned = seed % 2 ? 0.0 : 7.0;
-            const double error = compare(&variants[v], law, sizes[k], turned, seed);
+            const double deviation = compare(&variants[v], law, sizes[k], turned, seed);
             /* the grains are 1e-11 smaller than their cells, differences err by 1e-8 where an overlap's shape changes
              */
-            if (!(error <= 1e-7))
+            if (!(deviation <= 1e-7))
               fail_msg("%s, %s, law %d, motion %g, seed %d: forces differ by %g of the largest", classes[c],
-                       variants[v].name, law, sizes[k], (int)seed, error);
+                       variants[v].name, law, sizes[k], (int)seed, deviation);
           }
   }
   assert_int_equal(unsetenv("CLAST_CPU"), 0);

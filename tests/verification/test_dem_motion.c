@@ -97,9 +97,9 @@ TEST(energy_is_conserved) {
     for (int k = 0; k * in.fidelity.time_step < 10e-3; k += every, ++count) {
       for (int i = 0; i < every; i++)
         assert_true(dem_system_step(s));
-      const double error = fixture_total(dem_system_ledger(s)) / before - 1.0;
-      mean += error;
-      worst[fine] = fmax(worst[fine], fabs(error));
+      const double deviation = fixture_total(dem_system_ledger(s)) / before - 1.0;
+      mean += deviation;
+      worst[fine] = fmax(worst[fine], fabs(deviation));
     }
     dem_system_free(s);
     print_message("          dt %.1f us: worst %.2e, mean %.2e\n", in.fidelity.time_step * 1e6, worst[fine],
@@ -112,7 +112,7 @@ TEST(energy_is_conserved) {
 
 /* Order by the difference to a run with far smaller steps; beams only, which is a smooth problem. */
 static double order(int integrator, double finest, const struct dem_tessellation *t) {
-  double error[2];
+  double deviation[2];
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
   in.fidelity.integrator = integrator;
@@ -133,11 +133,11 @@ static double order(int integrator, double finest, const struct dem_tessellation
       }
     }
     if (run)
-      error[run - 1] = sqrt(sum);
+      deviation[run - 1] = sqrt(sum);
   }
-  print_message("          %s: %.2e m at %.1f us, order %.2f\n", integrator == DEM_GEAR ? "Gear" : "Verlet", error[0],
-                finest * 1e6, log2(error[1] / error[0]));
-  return log2(error[1] / error[0]);
+  print_message("          %s: %.2e m at %.1f us, order %.2f\n", integrator == DEM_GEAR ? "Gear" : "Verlet",
+                deviation[0], finest * 1e6, log2(deviation[1] / deviation[0]));
+  return log2(deviation[1] / deviation[0]);
 }
 
 TEST(integrators_have_their_order) {
@@ -167,8 +167,8 @@ static double damped_error(double time_step) {
     assert_true(dem_system_step(s));
   const double exact = -pressed * exp(-decay * span) * (cos(w * span) + decay / w * sin(w * span));
   assert_true(exact < 0.0); /* they still overlap */
-  const double error = fabs(s->c.x[1] - s->c.x[0] - (t->centroid[1].x - t->centroid[0].x) - exact);
-  return error;
+  const double deviation = fabs(s->c.x[1] - s->c.x[0] - (t->centroid[1].x - t->centroid[0].x) - exact);
+  return deviation;
 }
 
 TEST(gear_has_its_order_with_damping) {
@@ -296,12 +296,12 @@ TEST(gear_has_its_coefficients) {
     for (int k = 0; k < 6; k++)
       for (int j = 0; j < 6; j++)
         predicted[k] += pascal[k][j] * start[j];
-    const double error = 0.5 * dt * dt * s->c.fx[1] / s->mass[1] - predicted[2];
+    const double deviation = 0.5 * dt * dt * s->c.fx[1] / s->mass[1] - predicted[2];
     const double got[6] = {s->c.x[1],          s->c.vx[1] * dt,    s->c.gear[0][2][1],
                            s->c.gear[0][3][1], s->c.gear[0][4][1], s->c.gear[0][5][1]};
-    assert_true(fabs(error) > 1e-6);
+    assert_true(fabs(deviation) > 1e-6);
     for (int k = 0; k < 6; k++) /* roundings of values of 1e-5, and of the position itself */
-      fixture_near(got[k], predicted[k] + published[damped][k] * error, k ? 1e-19 : 1e-17, "Gear");
+      fixture_near(got[k], predicted[k] + published[damped][k] * deviation, k ? 1e-19 : 1e-17, "Gear");
   }
 }
 
@@ -550,7 +550,6 @@ TEST(extremes) {
   assert_true(taken < 100000);
   dem_system_free(s);
   in.grain.density = (double)NAN;
-  struct error error = {0};
   assert_int_equal(dem_system_create(t, &in, 0, &s, &error), STATUS_CONTENT);
   assert_null(s);
 }

@@ -1,9 +1,6 @@
 /* Estimators against synthetic spectra whose exponent is known. The test must reproduce the biases measured before this
  * program was written (true exponent 2.0, 200 samples): least squares is biased, maximum likelihood is not. Every
  * tolerance is a Monte-Carlo error computed here, times four. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -124,8 +121,9 @@ TEST(equal_grains_are_discrete) {
     }
   }
   for (int w = 0; w < 4; w++) {
-    double error = sqrt((squares[w] - mean[w] * mean[w]) / SETS), bias = 1.0 / (N / (lower[w] + 0.5)); /* (beta-1)/n */
-    printf("  whole grains from %.1f: %.3f +- %.3f\n", lower[w], mean[w], error);
-    assert_true(fabs(mean[w] - expected[w]) < 4 * error + 0.003 /* error of the expected numbers */ + bias);
+    double standard_error = sqrt((squares[w] - mean[w] * mean[w]) / SETS),
+           bias = 1.0 / (N / (lower[w] + 0.5)); /* (beta-1)/n */
+    printf("  whole grains from %.1f: %.3f +- %.3f\n", lower[w], mean[w], standard_error);
+    assert_true(fabs(mean[w] - expected[w]) < 4 * standard_error + 0.003 /* error of the expected numbers */ + bias);
   }
 }

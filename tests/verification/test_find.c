@@ -3,10 +3,6 @@
  *
  * Quick: 40 searches a law. CLAST_FULL=1: 1000. */
 #include <gsl/gsl_cdf.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/inference/crossing.h"
 #include "analysis/statistics/statistics.h"
@@ -181,13 +177,12 @@ static void begin(struct case_of_law *c, const struct law *law, uint64_t seed) {
 }
 
 static void find(const struct case_of_law *c, struct crossing *found) {
-  struct error error;
   const struct crossing_data data = {.n = c->runs,
                                      .x = c->x,
                                      .y = c->y,
                                      .level = 0,
                                      .share = c->law->share ? 0.5 : (double)NAN};
-  assert_int_equal(crossing_find(&data, found, &error), STATUS_OK);
+  OK(crossing_find(&data, found, &error));
 }
 
 /* As `clast find` does. */
@@ -211,17 +206,17 @@ static void search(struct case_of_law *c, double within, struct crossing *found)
 /* The usual way: the same number of runs at equal points, a straight line between the two around the level, and the
  * errors of their two means. */
 static double interpolate(const struct case_of_law *c, double *half_width) {
-  double mean[GRID], error[GRID];
+  double mean[GRID], standard_error[GRID];
   for (int i = 0; i < GRID; i++) {
     const struct sample_summary s = sample_summarise(GRID_RUNS, c->y + i * GRID_RUNS, 0.95);
     mean[i] = s.mean;
-    error[i] = s.standard_error;
+    standard_error[i] = s.standard_error;
   }
   for (int i = 0; i + 1 < GRID; i++)
     if (mean[i] * c->sign <= 0 && mean[i + 1] * c->sign > 0) {
       const double d = mean[i + 1] - mean[i], t = -mean[i] / d;
-      *half_width = gsl_cdf_tdist_Pinv(0.975, 2 * GRID_RUNS - 2) * hypot((1 - t) * error[i], t * error[i + 1]) /
-                    fabs(d) / (GRID - 1);
+      *half_width = gsl_cdf_tdist_Pinv(0.975, 2 * GRID_RUNS - 2) *
+                    hypot((1 - t) * standard_error[i], t * standard_error[i + 1]) / fabs(d) / (GRID - 1);
       return (i + t) / (GRID - 1);
     }
   *half_width = NAN;

@@ -5,8 +5,6 @@
  * by the range given there, well under the 1 % allowed here (4 % for `count` at 360/s, whose range is +-2 %). The
  * isolated law is met only where 0.7 < c_g t_f / R_s < 5, and the particle form differs from it by construction: that
  * is why the table, not the law, is the target. */
-#include <math.h>
-#include <stdlib.h>
 
 #include "tests/support/check.h"
 #include "tests/support/grady_kipp.h"

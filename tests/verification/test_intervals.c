@@ -4,10 +4,6 @@
  *
  * Quick: 100 to 600 samples a row, 80 discs of 200 grains. CLAST_FULL=1: 4000 samples, more laws. CLAST_STORE=FILE
  * draws from the first point of that store instead of the discs. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/statistics/statistics.h"
 #include "db/ask/ask.h"
@@ -208,7 +204,6 @@ TEST(intervals_hold_the_exponent_of_real_runs) {
   }
   struct store *store;
   struct point_data point;
-  struct error error = {0};
   if (store_open_reader(path, &store, &error) || point_read(store, 1, 0, &point, &error))
     fail_msg("%s", error.message);
   assert_true(point.runs.count > 0 && point.runs.count <= MOST_RUNS);

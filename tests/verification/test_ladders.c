@@ -6,9 +6,6 @@
  * Quick: 8 ladders a row, judged over all powers. CLAST_FULL=1: 250 a row, 1000 a law, each power judged; the table of
  * limits.md. */
 #include <gsl/gsl_cdf.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"

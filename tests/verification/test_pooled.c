@@ -1,8 +1,5 @@
 /* Pooling over runs: each run bounded by its own largest fragment gives the true exponent back, with a giant in every
  * run too; the interval from resampling runs has its nominal coverage; cut-offs are found if and only if they exist. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -53,11 +50,11 @@ TEST(true_exponent_with_an_interval) {
       over_runs += out.interval.standard_error / ENSEMBLES;
       held += fabs(out.fit.beta - 2) <= out.interval.half_width;
     }
-    double deviation = sqrt(squares - mean * mean), error = deviation / sqrt(ENSEMBLES);
+    double deviation = sqrt(squares - mean * mean), standard_error = deviation / sqrt(ENSEMBLES);
     printf("  %s%s: %.4f +- %.4f, quoted %.4f, over runs %.4f, covers %d %%\n", exponent_method_names[EXPONENT_MASSES],
            giant ? " with giants" : "", mean, deviation, quoted, over_runs, held);
     /* n is about 1800: the bias 1/n is below the Monte-Carlo error. */
-    assert_true(fabs(mean - 2) < 4 * error + 1.0 / 1500);
+    assert_true(fabs(mean - 2) < 4 * standard_error + 1.0 / 1500);
     assert_true(fabs(quoted / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
     assert_true(fabs(over_runs / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
     assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* test_intervals has a stricter test */

@@ -1,7 +1,5 @@
 /* Exact answers: stationary likelihoods for any exponent, the normalisation against closed forms, invariances. */
 #include <gsl/gsl_sf_gamma.h>
-#include <math.h>
-#include <stdio.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"

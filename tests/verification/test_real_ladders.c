@@ -2,10 +2,6 @@
  * the one before, with the same seeds. From the levels up to one, `clast converge` would state a mean at four times
  * its particles; the ladder has this level, too. The table of real_ladders.md. */
 #include <dirent.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/statistics/convergence.h"
 #include "analysis/statistics/statistics.h"
@@ -30,9 +26,8 @@ static double number(const char *text) {
 /* Columns: step, seed, results. Rows in order of the step, coarse to fine, then of the seed. */
 static void read_ladder(const char *path, struct ladder *ladder) {
   static struct csv csv; /* large */
-  struct error error;
   *ladder = (struct ladder){0};
-  assert_int_equal(csv_open(&csv, path, "a ladder", &error), STATUS_OK);
+  OK(csv_open(&csv, path, "a ladder", &error));
   for (enum csv_item item; (item = csv_next(&csv)) != CSV_END;) {
     assert_int_not_equal(item, CSV_WRONG);
     if (item == CSV_NAMES) {

@@ -1,8 +1,5 @@
 /* Summaries against exact numbers; coverage of intervals, of stopping rules and of the jackknife against their nominal
  * level, within Monte-Carlo errors (sqrt(p(1-p)/N), four of them). */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -72,10 +69,10 @@ static double coverage(bool bimodal, size_t n0, double half_width, int trials, d
 
 TEST(stopping_keeps_its_level) {
   enum { TRIALS = 2000 };
-  double length, error = sqrt(0.95 * 0.05 / TRIALS);
+  double length, standard_error = sqrt(0.95 * 0.05 / TRIALS);
   /* Normal data: at least the level (the guard and the last batch overshoot the width wanted). */
-  assert_true(coverage(false, 20, 0.5, TRIALS, &length) > 0.95 - 4 * error);
-  assert_true(coverage(false, 30, 0.2, TRIALS, &length) > 0.95 - 4 * error);
+  assert_true(coverage(false, 20, 0.5, TRIALS, &length) > 0.95 - 4 * standard_error);
+  assert_true(coverage(false, 30, 0.2, TRIALS, &length) > 0.95 - 4 * standard_error);
   /* (1.97/0.2)^2 = 97 runs, the guard adds (20 t)^2/97 = 16, the batch half of ten */
   assert_true(length > 105 && length < 125);
   /* One run in ten is 1, the rest 0. Without the guard .85-.89 from n0 = 30 and .7 from 3: the test would fail. */

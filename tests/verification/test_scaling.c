@@ -2,11 +2,6 @@
  *
  * Quick: small sizes, few samples. CLAST_FULL=1: the widths asked for (20 minutes), and other lattices. Of a size L the
  * samples are as 1/L of those of the smallest size; CLAST_SEEDS=n: n of those, whatever the widths. */
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/inference/scaling.h"
 #include "analysis/statistics/statistics.h"
@@ -229,8 +224,7 @@ static void check(const struct law *given, bool judge) {
   assert_non_null(runs);
   for (uint64_t repeat = 1; repeat <= REPEATS; repeat++) {
     SCALING found = {0};
-    struct error error;
-    assert_int_equal(scaling_find(make(law, repeat, runs), runs, law->dimensions, &found, &error), STATUS_OK);
+    OK(scaling_find(make(law, repeat, runs), runs, law->dimensions, &found, &error));
     assert_int_equal(found.kind, SCALING_FOUND);
     for (int v = 0; v < SCALING_VALUES; v++) {
       const double half = found.value[v].half_width, error_of = found.value[v].estimate - law->exact[v];

@@ -4,10 +4,6 @@
  * every case that holds less than 0.93. */
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_qrng.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"
@@ -218,7 +214,6 @@ static void one_set(const struct law *law, const struct setting *set, const doub
   const double whole = variance > 0 ? variance / (1 - set->noise) : 1;
   double common[MOST_SEEDS];
   struct sensitivity_point found[MOST_INPUTS + 1];
-  struct error error;
   size_t needed;
   p.seed = seed;
   p.draws = 0;
@@ -234,7 +229,7 @@ static void one_set(const struct law *law, const struct setting *set, const doub
                                                (common[r] + sqrt(1 - set->alike) * noise_of(&p, law->noise, u));
   }
   const struct sensitivity_points given = {k, p.n, p.u, named, set->seeds, p.runs, p.value, set->alike > 0};
-  assert_int_equal(sensitivity_points(&given, found, &needed, &error), STATUS_OK);
+  OK(sensitivity_points(&given, found, &needed, &error));
   assert_true(p.n >= needed);
   tally->sets++;
   for (size_t i = 0; i < k; i++)
@@ -407,7 +402,6 @@ TEST(no_bias) {
   double estimate[DRAWS];
   for (int s = 0; s < DRAWS; s++) {
     struct sensitivity_point found[MOST_INPUTS + 1];
-    struct error error;
     size_t needed;
     static const bool named[3] = {false};
     p.seed = 77000 + (uint64_t)s;
@@ -419,7 +413,7 @@ TEST(no_bias) {
       p.value[j] = normal_of(uniform(&p));
     }
     const struct sensitivity_points given = {3, p.n, p.u, named, 1, p.runs, p.value, false};
-    assert_int_equal(sensitivity_points(&given, found, &needed, &error), STATUS_OK);
+    OK(sensitivity_points(&given, found, &needed, &error));
     estimate[s] = found[0].of_runs.estimate;
   }
   const struct sample_summary mean = sample_summarise(DRAWS, estimate, 0.95);
@@ -429,11 +423,10 @@ TEST(no_bias) {
 
 /* What cannot be told is not told. */
 static void ask(struct points *p, size_t k, const bool *named, struct sensitivity_point *found, size_t *needed) {
-  struct error error;
   for (size_t j = 0; j < p->n; j++)
     p->runs[j] = 1;
   const struct sensitivity_points given = {k, p->n, p->u, named, 1, p->runs, p->value, false};
-  assert_int_equal(sensitivity_points(&given, found, needed, &error), STATUS_OK);
+  OK(sensitivity_points(&given, found, needed, &error));
 }
 
 /* Two seeds that all points share scatter much: shares of single runs are nearly unknown, those of the means are not.
@@ -442,7 +435,6 @@ TEST(ranks_are_those_of_the_means) {
   static struct points p = {.seed = 3, .n = 40};
   const bool named[2] = {false};
   struct sensitivity_point found[3];
-  struct error error;
   size_t needed;
   place(&p, LATIN, 2);
   for (size_t j = 0; j < p.n; j++) {
@@ -451,7 +443,7 @@ TEST(ranks_are_those_of_the_means) {
       p.value[2 * j + r] = 4 * p.u[2 * j] + p.u[2 * j + 1] + (r ? 1 : -1) + 0.2 * normal_of(uniform(&p));
   }
   const struct sensitivity_points given = {2, p.n, p.u, named, 2, p.runs, p.value, true};
-  assert_int_equal(sensitivity_points(&given, found, &needed, &error), STATUS_OK);
+  OK(sensitivity_points(&given, found, &needed, &error));
   assert_true(found[0].of_runs.low < found[1].of_runs.high); /* they overlap */
   assert_true(found[0].of_means.low > found[1].of_means.high);
   assert_true(found[0].last_rank == 1 && found[1].first_rank == 2);
@@ -460,7 +452,7 @@ TEST(ranks_are_those_of_the_means) {
   for (size_t j = 0; j < p.n; j++)
     for (size_t r = 0; r < 2; r++)
       p.value[2 * j + r] = 4 * p.u[2 * j] + (r ? 0.1 : -0.1) + 0.2 * normal_of(uniform(&p));
-  assert_int_equal(sensitivity_points(&given, found, &needed, &error), STATUS_OK);
+  OK(sensitivity_points(&given, found, &needed, &error));
   assert_true(found[0].of_runs.low > 0.5 && found[2].of_runs.estimate < 0.1);
   assert_true(found[2].of_runs.high <= 1 - found[0].of_runs.low);
 }

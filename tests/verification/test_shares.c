@@ -3,9 +3,6 @@
  *
  * Quick: 1000 samples a row, 100 discs. CLAST_FULL=1: 20 000 samples, 300 discs. */
 #include <gsl/gsl_cdf.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "analysis/statistics/statistics.h"
 #include "engine/random.h"

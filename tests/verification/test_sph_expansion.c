@@ -74,7 +74,7 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
 
 /* The same with particles; returns their number. */
 static size_t by_particles(double wanted, double u0, double inner, bool corrected, const double times[TIMES],
-                           double share[TIMES], double *error) {
+                           double share[TIMES], double *deviation) {
   struct sph_body body = {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},
                           .density = case_basalt.density,
                           .h_over_spacing = NAN};
@@ -99,7 +99,7 @@ static size_t by_particles(double wanted, double u0, double inner, bool correcte
     case_run(s, times[k]);
     const struct sph_ledger l = sph_system_ledger(s);
     share[k] = l.kinetic / total;
-    *error = (l.kinetic + l.internal - total) / total;
+    *deviation = (l.kinetic + l.internal - total) / total;
   }
   const size_t n = particles->n;
   return n;
@@ -130,12 +130,12 @@ TEST(motion_of_a_hot_ball) {
     assert_true(largest_miss(exact[0], exact[1]) < 2e-3);
     for (double wanted = 1000; wanted <= finest; wanted *= 8)
       for (int corrected = 0; corrected < 2; corrected++) {
-        double share[TIMES], error;
-        const size_t n = by_particles(wanted, balls[b].energy, balls[b].hot, corrected, times, share, &error);
+        double share[TIMES], deviation;
+        const size_t n = by_particles(wanted, balls[b].energy, balls[b].hot, corrected, times, share, &deviation);
         const double miss = largest_miss(share, exact[1]);
         print_message("  %zu particles, correction %s: %.4f %.4f %.4f, within %.2f %%; energy error %.1e\n", n,
-                      corrected ? "on " : "off", share[0], share[1], share[2], 100 * miss, error);
-        assert_true(fabs(error) < 0.005); /* the bound for impacts */
+                      corrected ? "on " : "off", share[0], share[1], share[2], 100 * miss, deviation);
+        assert_true(fabs(deviation) < 0.005); /* the bound for impacts */
         if (wanted > 1000)
           assert_true(miss < balls[b].most[corrected]);
       }

@@ -273,9 +273,8 @@ TEST(when_on) {
   body.strength = false;
   on = sph_modules_of(&body, &inputs);
   assert_false(set_has(on.word, SPH_MODULE_yield) || set_has(on.word, SPH_MODULE_pressure_strength));
-  struct error error = {0};
   const struct sph_module *module = sph_modules_at(SPH_MODULE_pressure_strength);
-  assert_int_equal(module->check_material(&body.material, &error), STATUS_OK);
+  OK(module->check_material(&body.material, &error));
   body.material.pressure_strength.intact_limit = body.material.pressure_strength.intact_cohesion;
   assert_int_equal(module->check_material(&body.material, &error), STATUS_CONTENT);
 }

@@ -85,13 +85,13 @@ static struct hit run(struct solid_case *c, double speed, double size, double en
   double *time = malloc(MOST * sizeof *time), *impulse = malloc(MOST * sizeof *impulse), touched = NAN;
   assert_true(time && impulse);
   size_t n = 0;
-  double error = 0;
+  double deviation = 0;
   while (c->system->now.time < end && !(c->system->now.time > touched + pause) && n < MOST) {
     solid_step(c, end);
     if (c->system->now.contact > 1e-9 * start.kinetic)
       touched = c->system->now.time;
     if (c->system->now.steps % 16 == 0)
-      error = fmax(error, fabs(solid_energy_error(c, start)));
+      deviation = fmax(deviation, fabs(solid_energy_error(c, start)));
     time[n] = c->system->now.time;
     impulse[n++] = momentum_of(c, 1) - first;
   }
@@ -99,7 +99,7 @@ static struct hit run(struct solid_case *c, double speed, double size, double en
   struct hit hit = {.rebound = (velocity_of(c, 1) - velocity_of(c, 0)) / speed,
                     .exchanged = -velocity_of(c, 0) / speed,
                     .kinetic = now.kinetic / start.kinetic,
-                    .energy = error / start.kinetic,
+                    .energy = deviation / start.kinetic,
                     .momentum = change(now.momentum, start.momentum) / start.momentum_scale,
                     .angular = change(now.angular_momentum, start.angular_momentum) / (start.momentum_scale * size)};
   double begin = NAN, last = NAN;

@@ -216,7 +216,6 @@ static double particle_form(const struct sph_flaws *flaws, const unsigned char *
 }
 
 static struct pulled pull(double particles, double rate, uint64_t seed) {
-  struct error error = {0};
   struct solid_case c = rod(particles);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
@@ -229,8 +228,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   const struct sph_middle middle = {.axis = {0, 0, 1}, .half = length / 2 - 5e-3};
   const struct sph_flaw_law law = {.weibull = m->weibull, .draw = SPH_FLAWS_RANKED, .seed = seed};
   struct sph_flaws *flaws = NULL;
-  if (sph_flaws_place(&law, &c.body[0].shape, p, c.range[0], &middle, &flaws, &error))
-    fail_msg("%s", error.message);
+  OK(sph_flaws_place(&law, &c.body[0].shape, p, c.range[0], &middle, &flaws, &error));
   c.physics[0].flaws = flaws;
   sph_bodies_stretch(p, c.range[0], centre, axis, rate, solid_poisson(m));
   OWNED unsigned char *in = malloc(p->n);

@@ -140,7 +140,6 @@ TEST(spinning_sphere) {
  * crossed it. */
 static void impact(bool correction, int precision) {
   const double radius = 0.01;
-  struct error error = {0};
   struct solid_case c = solid_make(2);
   struct sph_flaws *flaws = NULL;
   for (int b = 0; b < 2; b++) {
@@ -156,15 +155,13 @@ static void impact(bool correction, int precision) {
   c.parameters.in.fidelity.precision = precision;
   double flight[3];
   const double direction[3] = {0, 0.2, 1};
-  if (sph_bodies_aim(&c.body[0].shape, &c.body[1].shape, direction, 0.5, 0.1 * radius, flight, &error))
-    fail_msg("%s", error.message);
+  OK(sph_bodies_aim(&c.body[0].shape, &c.body[1].shape, direction, 0.5, 0.1 * radius, flight, &error));
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaw_law law = {.weibull = solid_basalt().weibull,
                              .volume = 4.0 / 3 * M_PI * pow(radius, 3),
                              .draw = SPH_FLAWS_RANKED,
                              .seed = 3};
-  if (sph_flaws_make(&law, c.range[0].n, NULL, NULL, 0, &flaws, &error))
-    fail_msg("%s", error.message);
+  OK(sph_flaws_make(&law, c.range[0].n, NULL, NULL, 0, &flaws, &error));
   c.physics[0].flaws = flaws;
   const double velocity[3] = {2000 * flight[0], 2000 * flight[1], 2000 * flight[2]};
   sph_bodies_move(c.particles, c.range[1], velocity);
