@@ -10,13 +10,10 @@ figures() { # figures LEAST PROGRAM [ARGUMENT...]: the program prints at least L
   [ "$(wc -l <out)" -ge "$least" ] || fail "$(wc -l <out) figures, expected $least at least"
 }
 figures 9 "$build/tests/bench/bench_palpha_program"
-figures 8 "$build/tests/bench/bench_analysis_program"
-figures 3 "$build/tests/bench/bench_campaign_program"
 if [ -n "${CLAST_FULL:-}" ]; then
   figures 18 "$build/tests/bench/bench_dem_program"
-  figures 3 "$build/tests/bench/bench_sph_fragments_program"
   figures 20 "$build/tests/bench/bench_sph_program" 10000
 else # half a minute, and other tests run the same code
-  ok "(bench_dem not run)"; ok "(nor bench_sph_fragments)"; ok "(nor bench_sph)"
+  ok "(bench_dem not run)"; ok "(nor bench_sph)"
 fi
-done_after 6
+done_after 3
