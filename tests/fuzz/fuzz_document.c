@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schemas/document.h"
+#include "schemas/rows.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
@@ -26,35 +27,15 @@ struct thing {
   double needed;
 };
 static const char *const laws[] = {"weak", "strong", "off", NULL};
-#define AT(member) .offset = offsetof(struct thing, member)
 static const struct field rows[] = {
-    {.path = "a.length", .kind = FIELD_REAL, .unit = "m", AT(length), .minimum = 0, .maximum = 10},
-    {.path = "a.limit",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     AT(limit),
-     .minimum = -1,
-     .maximum = 1,
-     .number = (double)NAN,
-     .flags = FIELD_MAY_BE_OFF},
-    {.path = "a.b.count",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     AT(count),
-     .minimum = 0,
-     .maximum = 99,
-     .when = "law=weak|strong"},
-    {.path = "m", .kind = FIELD_INTEGER, .unit = "B", AT(memory), .minimum = -HUGE_VAL, .maximum = HUGE_VAL},
-    {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken)},
-    {.path = "law", .kind = FIELD_CHOICE, AT(law), .choices = laws},
-    {.path = "name", .kind = FIELD_TEXT, AT(name), .when = "broken=true"},
-    {.path = "s",
-     .kind = FIELD_REAL,
-     .unit = "m/s",
-     AT(needed),
-     .minimum = -HUGE_VAL,
-     .maximum = HUGE_VAL,
-     .flags = FIELD_REQUIRED},
+    REAL_OF(thing, a.length, length, "m", 0, 0, 10),
+    REAL_OF(thing, a.limit, limit, "1", (double)NAN, -1, 1, .flags = FIELD_MAY_BE_OFF),
+    ROW_OF(thing, a.b.count, count, FIELD_INTEGER, "1", .minimum = 0, .maximum = 99, .when = "law=weak|strong"),
+    ROW_OF(thing, m, memory, FIELD_INTEGER, "B", .minimum = -HUGE_VAL, .maximum = HUGE_VAL),
+    ROW_OF(thing, broken, broken, FIELD_BOOLEAN, NULL),
+    ROW_OF(thing, law, law, FIELD_CHOICE, NULL, .choices = laws),
+    ROW_OF(thing, name, name, FIELD_TEXT, NULL, .when = "broken=true"),
+    REAL_OF(thing, s, needed, "m/s", 0, -HUGE_VAL, HUGE_VAL, .flags = FIELD_REQUIRED),
 };
 static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "");
 

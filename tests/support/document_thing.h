@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "schemas/document.h"
+#include "schemas/rows.h"
 #include "tests/support/check.h"
 
 struct thing {
@@ -19,53 +20,20 @@ struct thing {
 
 static const char *const laws[] = {"weak", "strong", "off", NULL};
 static const char *const shapes[] = {"disc", "block", NULL};
-#define AT(member) .offset = offsetof(struct thing, member)
-#define FINITE     .minimum = -HUGE_VAL, .maximum = HUGE_VAL
 static const struct field rows[] = {
-    {.path = "shape", .kind = FIELD_CHOICE, AT(shape), .choices = shapes, .doc = "Shape."},
-    {.path = "body.length",
-     .kind = FIELD_REAL,
-     .unit = "m",
-     AT(length),
-     .minimum = 0,
-     .maximum = 10,
-     .number = 1,
-     .doc = "Length."},
-    {.path = "body.limit",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     AT(limit),
-     FINITE,
-     .number = NAN,
-     .flags = FIELD_MAY_BE_OFF,
-     .doc = "Limit."},
-    {.path = "body.count",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     AT(count),
-     .minimum = 1,
-     .maximum = 99,
-     .number = 7,
-     .doc = "Count."},
-    {.path = "memory", .kind = FIELD_INTEGER, .unit = "B", AT(memory), FINITE, .number = 1, .doc = "Memory."},
-    {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken), .number = 1, .doc = "Broken."},
-    {.path = "contact.law", .kind = FIELD_CHOICE, AT(law), .choices = laws, .doc = "Law."},
-    {.path = "contact.speed",
-     .kind = FIELD_REAL,
-     .unit = "m/s",
-     AT(speed),
-     FINITE,
-     .when = "contact.law=weak|strong",
-     .doc = "Speed."},
-    {.path = "name", .kind = FIELD_TEXT, AT(name), .text = "", .doc = "Name."},
-    {.path = "block.height",
-     .kind = FIELD_REAL,
-     .unit = "m",
-     AT(needed),
-     FINITE,
-     .flags = FIELD_REQUIRED,
-     .when = "shape=block",
-     .doc = "Height of the block."},
+    ROW_OF(thing, shape, shape, FIELD_CHOICE, NULL, .choices = shapes, .doc = "Shape."),
+    REAL_OF(thing, body.length, length, "m", 1, 0, 10, .doc = "Length."),
+    REAL_OF(thing, body.limit, limit, "1", NAN, -HUGE_VAL, HUGE_VAL, .flags = FIELD_MAY_BE_OFF, .doc = "Limit."),
+    ROW_OF(thing, body.count, count, FIELD_INTEGER, "1", .number = 7, .minimum = 1, .maximum = 99, .doc = "Count."),
+    ROW_OF(thing, memory, memory, FIELD_INTEGER, "B", .number = 1, .minimum = -HUGE_VAL, .maximum = HUGE_VAL,
+           .doc = "Memory."),
+    ROW_OF(thing, broken, broken, FIELD_BOOLEAN, NULL, .number = 1, .doc = "Broken."),
+    ROW_OF(thing, contact.law, law, FIELD_CHOICE, NULL, .choices = laws, .doc = "Law."),
+    REAL_OF(thing, contact.speed, speed, "m/s", 0, -HUGE_VAL, HUGE_VAL, .when = "contact.law=weak|strong",
+            .doc = "Speed."),
+    ROW_OF(thing, name, name, FIELD_TEXT, NULL, .text = "", .doc = "Name."),
+    REAL_OF(thing, block.height, needed, "m", 0, -HUGE_VAL, HUGE_VAL, .flags = FIELD_REQUIRED, .when = "shape=block",
+            .doc = "Height of the block."),
 };
 static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "A thing for tests.");
 

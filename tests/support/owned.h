@@ -1,4 +1,5 @@
-/* Variables that release themselves where their block is left, as OWNED, SCENE, STORE and CAMPAIGN of the program do. */
+/* Variables that release themselves where their block is left, as OWNED, SCENE, STORE and CAMPAIGN of the program do.
+ */
 #pragma once
 
 #include "schemas/memory.h"

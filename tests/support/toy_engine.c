@@ -1,5 +1,6 @@
 /* The toy engine, and the list of engines of the programs that have it. */
 #include "tests/support/toy_engine.h"
+#include "schemas/rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,12 +29,7 @@ static const struct field input_rows[] = {
 static const struct field_table inputs = FIELD_TABLE(input_rows, struct toy_inputs, "toy scene",
                                                      "A stick that breaks.");
 static const struct field result_rows[] = {
-    {.path = "pieces",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     .offset = offsetof(struct toy_results, pieces),
-     .maximum = HUGE_VAL,
-     .doc = "Number of pieces."},
+    ROW_OF(toy_results, pieces, pieces, FIELD_INTEGER, "1", .maximum = HUGE_VAL, .doc = "Number of pieces."),
 };
 static const struct field_table results = FIELD_TABLE(result_rows, struct toy_results, "toy result", "A broken stick.");
 

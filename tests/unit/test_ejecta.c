@@ -4,6 +4,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "schemas/rows.h"
 #include "tests/support/check.h"
 #include "tests/support/store_checks.h"
 
@@ -54,14 +55,8 @@ struct thrown {
   struct ejecta ejecta;
 };
 static const struct field rows[] = {
-    {.path = "ejecta.momentum",
-     .kind = FIELD_REAL,
-     .unit = "kg m/s",
-     .offset = offsetof(struct thrown, momentum),
-     .minimum = 0,
-     .maximum = HUGE_VAL,
-     .flags = FIELD_MAY_BE_OFF,
-     .doc = "Momentum of the ejecta."},
+    REAL_OF(thrown, ejecta.momentum, momentum, "kg m/s", 0, 0, HUGE_VAL, .flags = FIELD_MAY_BE_OFF,
+            .doc = "Momentum of the ejecta."),
 };
 static const struct field_table results = FIELD_TABLE(rows, struct thrown, "thrown result", "A result for tests.");
 static const struct engine_kind kind = {.name = "thrown",

@@ -1,6 +1,6 @@
 /* Field tables: defaults, finding, conditions, setting and parsing with their messages, JSON, identity, bytes. */
 
-#include "schemas/field.h"
+#include "schemas/rows.h"
 #include "schemas/text.h"
 #include "tests/support/check.h"
 
@@ -16,76 +16,20 @@ struct thing {
 
 static const char *const laws[] = {"weak", "strong", "off", NULL};
 static const char *const modes[] = {"plain", "fancy", NULL};
-#define AT(member) .offset = offsetof(struct thing, member)
 static const struct field rows[] = {
-    {.path = "body.length",
-     .kind = FIELD_REAL,
-     .unit = "m",
-     AT(length),
-     .minimum = 0,
-     .maximum = HUGE_VAL,
-     .number = 0.4,
-     .flags = FIELD_ABOVE_MINIMUM,
-     .doc = "How long it is.",
-     .source = "a paper, eq. 3"},
-    {.path = "law",
-     .kind = FIELD_CHOICE,
-     AT(law),
-     .choices = laws,
-     .choice_docs = "soft\nhard\nnone",
-     .number = 1,
-     .doc = "Which law."},
-    {.path = "body.limit",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     AT(limit),
-     .minimum = 0,
-     .maximum = 1,
-     .number = NAN,
-     .flags = FIELD_MAY_BE_OFF | FIELD_BELOW_MAXIMUM,
-     .doc = "Limit."},
-    {.path = "body.count",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     AT(count),
-     .minimum = 1,
-     .maximum = 1e6,
-     .number = 7,
-     .doc = "How many."},
-    {.path = "memory",
-     .kind = FIELD_INTEGER,
-     .unit = "B",
-     AT(memory),
-     .minimum = 0,
-     .maximum = HUGE_VAL,
-     .number = 1024,
-     .doc = "Memory."},
-    {.path = "law_of.angle",
-     .kind = FIELD_REAL,
-     .unit = "rad",
-     AT(angle),
-     .minimum = -4,
-     .maximum = 4,
-     .number = 0.5,
-     .when = "law=weak|strong",
-     .doc = "Angle."},
-    {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken), .number = 1, .doc = "Broken."},
-    {.path = "mode",
-     .kind = FIELD_CHOICE,
-     AT(mode),
-     .choices = modes,
-     .number = 0,
-     .when = "broken=true",
-     .doc = "Mode."},
-    {.path = "name", .kind = FIELD_TEXT, AT(name), .text = "none", .when = "mode=fancy", .doc = "Name."},
-    {.path = "other.length",
-     .kind = FIELD_REAL,
-     .unit = "m",
-     AT(needed),
-     .minimum = -HUGE_VAL,
-     .maximum = HUGE_VAL,
-     .flags = FIELD_REQUIRED,
-     .doc = "Needed."},
+    REAL_OF(thing, body.length, length, "m", 0.4, 0, HUGE_VAL, .flags = FIELD_ABOVE_MINIMUM, .doc = "How long it is.",
+            .source = "a paper, eq. 3"),
+    ROW_OF(thing, law, law, FIELD_CHOICE, NULL, .number = 1, .choices = laws, .choice_docs = "soft\nhard\nnone",
+           .doc = "Which law."),
+    REAL_OF(thing, body.limit, limit, "1", NAN, 0, 1, .flags = FIELD_MAY_BE_OFF | FIELD_BELOW_MAXIMUM, .doc = "Limit."),
+    ROW_OF(thing, body.count, count, FIELD_INTEGER, "1", .number = 7, .minimum = 1, .maximum = 1e6, .doc = "How many."),
+    ROW_OF(thing, memory, memory, FIELD_INTEGER, "B", .number = 1024, .minimum = 0, .maximum = HUGE_VAL,
+           .doc = "Memory."),
+    REAL_OF(thing, law_of.angle, angle, "rad", 0.5, -4, 4, .when = "law=weak|strong", .doc = "Angle."),
+    ROW_OF(thing, broken, broken, FIELD_BOOLEAN, NULL, .number = 1, .doc = "Broken."),
+    ROW_OF(thing, mode, mode, FIELD_CHOICE, NULL, .number = 0, .choices = modes, .when = "broken=true", .doc = "Mode."),
+    ROW_OF(thing, name, name, FIELD_TEXT, NULL, .text = "none", .when = "mode=fancy", .doc = "Name."),
+    REAL_OF(thing, other.length, needed, "m", 0, -HUGE_VAL, HUGE_VAL, .flags = FIELD_REQUIRED, .doc = "Needed."),
 };
 static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "A thing for tests.");
 enum { ROWS = sizeof rows / sizeof rows[0] };
@@ -234,8 +178,8 @@ TEST(conditions_chain) {
   field_describe_inactive(&table, row("body.count"), &thing, why, sizeof why);
   assert_string_equal(why, "");
   static const struct field circular[] = {
-      {.path = "a", .kind = FIELD_BOOLEAN, AT(broken), .when = "b=false"},
-      {.path = "b", .kind = FIELD_BOOLEAN, AT(broken), .when = "a=false"},
+      ROW_OF(thing, a, broken, FIELD_BOOLEAN, NULL, .when = "b=false"),
+      ROW_OF(thing, b, broken, FIELD_BOOLEAN, NULL, .when = "a=false"),
   };
   const struct field_table round = FIELD_TABLE(circular, struct thing, "round", "");
   assert_false(field_is_active(&round, &circular[0], &thing)); /* ends */
@@ -400,12 +344,12 @@ TEST(json_and_identity) {
  * default is today. */
 TEST(absent_values_leave_the_identity) {
   static const struct field later[] = {
-      {.path = "angle", .kind = FIELD_REAL, .unit = "rad", AT(angle), .number = 2, .maximum = 9, .absent = "0"},
-      {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken), .number = 1, .maximum = 1, .absent = "false"},
-      {.path = "count", .kind = FIELD_INTEGER, .unit = "1", AT(count), .number = 2, .maximum = 9, .absent = "1"},
-      {.path = "law", .kind = FIELD_CHOICE, AT(law), .choices = laws, .number = 1, .absent = "off"},
-      {.path = "limit", .kind = FIELD_REAL, .unit = "1", AT(limit), .flags = FIELD_MAY_BE_OFF, .absent = "off"},
-      {.path = "name", .kind = FIELD_TEXT, AT(name), .text = "new", .absent = ""},
+      REAL_OF(thing, angle, angle, "rad", 2, 0, 9, .absent = "0"),
+      ROW_OF(thing, broken, broken, FIELD_BOOLEAN, NULL, .number = 1, .maximum = 1, .absent = "false"),
+      ROW_OF(thing, count, count, FIELD_INTEGER, "1", .number = 2, .maximum = 9, .absent = "1"),
+      ROW_OF(thing, law, law, FIELD_CHOICE, NULL, .number = 1, .choices = laws, .absent = "off"),
+      REAL_OF(thing, limit, limit, "1", 0, 0, 0, .flags = FIELD_MAY_BE_OFF, .absent = "off"),
+      ROW_OF(thing, name, name, FIELD_TEXT, NULL, .text = "new", .absent = ""),
   };
   const struct field_table six = FIELD_TABLE(later, struct thing, "later", "");
   struct thing thing;
@@ -496,10 +440,10 @@ TEST(bytes_are_pinned_and_guarded) {
     char name[FIELD_TEXT_SIZE];
   } pair, back;
   const struct field few[] = {
-      {.path = "x", .kind = FIELD_REAL, .offset = offsetof(struct pair, x)},
-      {.path = "law", .kind = FIELD_CHOICE, .offset = offsetof(struct pair, law), .choices = laws},
-      {.path = "b", .kind = FIELD_BOOLEAN, .offset = offsetof(struct pair, b)},
-      {.path = "name", .kind = FIELD_TEXT, .offset = offsetof(struct pair, name)},
+      REAL_OF(pair, x, x, NULL, 0, 0, 0),
+      ROW_OF(pair, law, law, FIELD_CHOICE, NULL, .choices = laws),
+      ROW_OF(pair, b, b, FIELD_BOOLEAN, NULL),
+      ROW_OF(pair, name, name, FIELD_TEXT, NULL),
   };
   struct field changed[4];
   struct field_table small = {.rows = few, .count = 4, .size = sizeof pair, .name = "pair"};

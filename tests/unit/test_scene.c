@@ -6,6 +6,7 @@
 #include "engine/scene.h"
 
 #include "engine/scene.c" /* with engine_find replaced */
+#include "schemas/rows.h"
 #include "tests/support/check.h"
 #undef engine_find
 
@@ -16,32 +17,10 @@ struct tiny {
 };
 static const char *const kinds[] = {"ball", "block", NULL};
 static const struct field rows[] = {
-    {.path = "kind", .kind = FIELD_CHOICE, .offset = offsetof(struct tiny, kind), .choices = kinds, .doc = "Kind."},
-    {.path = "impact.speed",
-     .kind = FIELD_REAL,
-     .unit = "m/s",
-     .offset = offsetof(struct tiny, speed),
-     .minimum = 0,
-     .maximum = 1e6,
-     .number = 10,
-     .doc = "Speed."},
-    {.path = "ball.size",
-     .kind = FIELD_REAL,
-     .unit = "m",
-     .offset = offsetof(struct tiny, size),
-     .minimum = 0,
-     .maximum = 10,
-     .number = 1,
-     .when = "kind=ball",
-     .doc = "Size."},
-    {.path = "fidelity.count",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     .offset = offsetof(struct tiny, count),
-     .minimum = 1,
-     .maximum = 1e9,
-     .number = 5,
-     .doc = "Count."},
+    ROW_OF(tiny, kind, kind, FIELD_CHOICE, NULL, .choices = kinds, .doc = "Kind."),
+    REAL_OF(tiny, impact.speed, speed, "m/s", 10, 0, 1e6, .doc = "Speed."),
+    REAL_OF(tiny, ball.size, size, "m", 1, 0, 10, .when = "kind=ball", .doc = "Size."),
+    ROW_OF(tiny, fidelity.count, count, FIELD_INTEGER, "1", .number = 5, .minimum = 1, .maximum = 1e9, .doc = "Count."),
 };
 static const struct field_table inputs = FIELD_TABLE(rows, struct tiny, "tiny scene", "A tiny engine.");
 
