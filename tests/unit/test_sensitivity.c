@@ -1,9 +1,5 @@
 /* Sobol indices of functions with known ones, with and without seeds; intervals. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "campaign/design/design.h"
 #include "engine/random.h"
@@ -184,10 +180,10 @@ TEST(coverage) {
         for (int i = 0; i < INPUTS; i++)
           for (int total = 0; total < 2; total++) {
             const struct sample_interval *found = total ? &index[i].total : &index[i].first;
-            const double error = fabs(found->estimate - (total ? law[l].total[i] : law[l].first[i]));
-            held[total][i] += error <= found->half_width;
+            const double deviation = fabs(found->estimate - (total ? law[l].total[i] : law[l].first[i]));
+            held[total][i] += deviation <= found->half_width;
             width[total] += found->half_width / INPUTS / cases;
-            off[total] += error / INPUTS / cases;
+            off[total] += deviation / INPUTS / cases;
           }
         free(value);
       }
@@ -267,7 +263,6 @@ TEST(designs) {
         assert_true(u[2 + i][d] == (i == d ? u[1][d] : u[0][d]) && u[0][d] != u[1][d]);
   }
   design_sensitivity_free(design);
-  struct error error;
   assert_int_equal(design_sensitivity_create(21, 4, 1, &design, &error), STATUS_CONTENT);
   assert_int_equal(design_sensitivity_create(0, 4, 1, &design, &error), STATUS_CONTENT);
 }
