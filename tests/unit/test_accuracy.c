@@ -1,16 +1,11 @@
 /* Which settings and how many seeds reach an accuracy: known answers from invented studies. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/statistics/statistics.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/converge/ladder.h"
 #include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
-static struct error error;
 static char path[64];
 
 TEST(seeds_for_a_margin) {
@@ -65,7 +60,7 @@ static void add_study_of(struct store *store, const struct campaign *campaign, c
   struct convergence_row rows[8];
   struct convergence_limit_row limit;
   int64_t points[8], point;
-  assert_int_equal(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error), STATUS_OK);
+  OK(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error));
   field_defaults(&convergence_limit_table, &limit);
   snprintf(limit.knob, sizeof limit.knob, "%s", knob);
   strcpy(limit.quantity, "largest_fraction");
@@ -93,11 +88,11 @@ static void add_study_of(struct store *store, const struct campaign *campaign, c
     if (!levels[i].base)
       assert_int_equal(ladder_turn(engine_knob(scene->kind, knob, &error), scene, levels[i].setting, &error),
                        STATUS_OK);
-    assert_int_equal(store_add_point(store, 0, scene, 0, NULL, &points[i], &error), STATUS_OK);
+    OK(store_add_point(store, 0, scene, 0, NULL, &points[i], &error));
   }
   const struct store_convergence study = {point, engine_find("dem", &error)->results_version, count, points, rows,
                                           &limit};
-  assert_int_equal(store_set_convergence(store, &study, &error), STATUS_OK);
+  OK(store_set_convergence(store, &study, &error));
 }
 
 static void add_study(struct store *store, const struct campaign *campaign, const char *knob, size_t count,
@@ -109,7 +104,7 @@ static void add_study(struct store *store, const struct campaign *campaign, cons
  * not a candidate. */
 static void store_study(const struct campaign *campaign, bool open) {
   struct store *store = NULL;
-  assert_int_equal(store_open_writer(fixture_path(path, "accuracy"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "accuracy"), &store, NULL, 0, &error));
   add_study(store, campaign, "time_step", 3,
             (const struct level[]){{"2e-6", 0.03, 0.02, 5, false, open, 0},
                                    {"1e-6", 0.02, 0.02, 10, true, open, 0},
@@ -117,7 +112,7 @@ static void store_study(const struct campaign *campaign, bool open) {
   add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.01, 0.02, 10, true, false, 0}});
   add_study(store, campaign, "contact_law", 2,
             (const struct level[]){{"off", NAN, 0.02, 1, false, false, 0}, {"printed", NAN, 0.02, 10, true, false, 0}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
 }
 
 #define HEAD "name: t\nscene: disc-explosion\n"
@@ -126,7 +121,7 @@ TEST(the_cheapest_that_reaches_it) {
   struct accuracy accuracy;
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.06}\n");
   store_study(campaign, false);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 3);
   /* margins 0.02, 0.03, 0.05 at a scatter of 0.02 need 7, 5, 3 seeds: 35, 50 and 120 s */
   assert_int_equal(accuracy.chosen, 0);
@@ -135,7 +130,7 @@ TEST(the_cheapest_that_reaches_it) {
   assert_true(accuracy.options[0].cpu_s == 35 && accuracy.options[1].cpu_s == 50 && accuracy.options[1].own);
   assert_int_equal(accuracy.reference, 2);
   accuracy_clear(&accuracy);
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_OK);
+  OK(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error));
   assert_int_equal(campaign->per_point, 7);
   struct field_value value;
   field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
@@ -144,7 +139,7 @@ TEST(the_cheapest_that_reaches_it) {
 
   /* A smaller margin: only the finest setting reaches it. */
   campaign = campaign_of(HEAD "accuracy: {quantity: largest_fraction, within: 0.025}\n");
-  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_OK);
+  OK(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error));
   field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
   assert_true(value.number == 2.5e-7);
   campaign_free(campaign);
@@ -164,22 +159,22 @@ TEST(finer_than_any_level) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
-  assert_int_equal(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error));
   add_study(store, campaign, "time_step", 4,
             (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, false, 2e-6},
                                    {"1e-6", 0.02, 1e-4, 10, true, false, 1e-6},
                                    {"5e-07", 0.02 * sqrt(0.5), NAN, NAN, false, false, 5e-7},
                                    {"2.5e-07", 0.02 * 0.5, NAN, NAN, false, false, 2.5e-7}});
   add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.005, 1e-4, 10, true, false, 0}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 4);
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_true(chosen->extrapolated && !chosen->own); /* 0.005 + 0.02 sqrt(1/2) = 0.0191 is within 0.02; no level is */
   assert_string_equal(chosen->setting, "5e-07");
   assert_true(fabs(chosen->error - (0.005 + 0.02 * sqrt(0.5))) < 1e-12);
   assert_true(chosen->run_s > 15 && chosen->run_s < 25);
-  assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
+  OK(accuracy_apply(&accuracy, campaign, &error));
   accuracy_clear(&accuracy);
   campaign_free(campaign);
 }
@@ -199,10 +194,10 @@ TEST(a_share_is_one_of_the_settings_own_mean) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 5 %}\n");
     struct store *store = NULL;
     struct accuracy accuracy;
-    assert_int_equal(store_open_writer(fixture_path(path, "shares"), &store, NULL, 0, &error), STATUS_OK);
+    OK(store_open_writer(fixture_path(path, "shares"), &store, NULL, 0, &error));
     add_study_of(store, campaign, "time_step", 2, cases[i].levels, cases[i].means);
-    assert_int_equal(store_close(store, &error), STATUS_OK);
-    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    OK(store_close(store, &error));
+    OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     assert_true(accuracy.count == 2 && accuracy.chosen == 0);
     assert_string_equal(accuracy.options[0].setting, cases[i].chosen);
     assert_true(accuracy.options[0].total <= 0.05 * 0.9);
@@ -216,15 +211,15 @@ TEST(no_error_is_larger_than_a_share_can_move) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
-  assert_int_equal(store_open_writer(fixture_path(path, "capped"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "capped"), &store, NULL, 0, &error));
   add_study_of(store, campaign, "time_step", 3,
                (const struct level[]){{"2e-6", 0.5, 1e-4, 5, false, false, 2e-6},
                                       {"1e-6", 0.5, 1e-4, 10, true, false, 1e-6},
                                       {"5e-07", 0.4, NAN, NAN, false, false, 5e-7}},
                (const double[]){0.4, 0.3, NAN});
   add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.5, 1e-4, 10, true, false, 0}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(fabs(accuracy.options[i].error - (strcmp(accuracy.options[i].setting, "2e-6") ? 0.7 : 0.6)) < 1e-12);
@@ -240,7 +235,7 @@ TEST(the_study_with_the_finest_level_counts) {
                   *second = campaign_of(HEAD "set: {fidelity.time_step: 0.5 us}\naccuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
-  assert_int_equal(store_open_writer(fixture_path(path, "kin"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "kin"), &store, NULL, 0, &error));
   add_study(store, first, "grains", 2,
             (const struct level[]){{"0.01069", 0.4, 1e-4, 5, true, false, 0.01069},
                                    {"0.00759", 0.35, 1e-4, 10, false, false, 0.00759}});
@@ -254,8 +249,8 @@ TEST(the_study_with_the_finest_level_counts) {
             (const struct level[]){{"0.01069", 0.2, 1e-4, 10, true, false, 0.01069},
                                    {"0.00759", 0.1, 1e-4, 20, false, false, 0.00759},
                                    {"0.003795", 0.05, 1e-4, 40, false, false, 0.003795}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
-  assert_int_equal(accuracy_find(second, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(store_close(store, &error));
+  OK(accuracy_find(second, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < 3; i++) /* least error first */
     assert_true(fabs(accuracy.options[i].error - (const double[]){0.07, 0.12, 0.22}[i]) < 1e-12);
@@ -277,7 +272,7 @@ TEST(the_knob_that_leaves_most_is_advised) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
     struct store *store = NULL;
     struct accuracy accuracy;
-    assert_int_equal(store_open_writer(fixture_path(path, "widest"), &store, NULL, 0, &error), STATUS_OK);
+    OK(store_open_writer(fixture_path(path, "widest"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", 3,
               (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, true, 2e-6},
                                      {"1e-6", 0.03, 1e-4, 10, true, true, 1e-6},
@@ -286,8 +281,8 @@ TEST(the_knob_that_leaves_most_is_advised) {
               (const struct level[]){{"0.02", 0.3, 1e-4, 5, false, false, 0.02},
                                      {"0.01069", cases[i].grains, 1e-4, 10, true, false, 0.01069},
                                      {"0.008", 0.05, NAN, 20, false, false, 0.008}});
-    assert_int_equal(store_close(store, &error), STATUS_OK);
-    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    OK(store_close(store, &error));
+    OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_CONTENT);
     if (!strstr(error.message, cases[i].advice) || !strstr(error.message, i ? "--knob time_step=" : "--knob grains="))
       fail_msg("%s", error.message);
@@ -302,13 +297,13 @@ TEST(levels_that_differ_little_are_enough) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
-  assert_int_equal(store_open_writer(fixture_path(path, "flat"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "flat"), &store, NULL, 0, &error));
   add_study(store, campaign, "time_step", 3,
             (const struct level[]){{"2e-6", 0.012, 1e-4, 5, false, true, 2e-6},
                                    {"1e-6", 0.004, 1e-4, 10, true, true, 1e-6},
                                    {"5e-7", 0.004, 1e-4, 20, false, true, 5e-7}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_true(accuracy.count == 3 && accuracy.chosen == 0 && chosen->own && chosen->open);
   assert_true(chosen->error == 0.004 && fabs(chosen->beyond - fmax(0.012, 0.004 / (sqrt(2) - 1))) < 1e-12);
@@ -337,10 +332,10 @@ TEST(an_own_level_that_did_not_run) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.05}\n");
     struct store *store = NULL;
     struct accuracy accuracy;
-    assert_int_equal(store_open_writer(fixture_path(path, "left-out"), &store, NULL, 0, &error), STATUS_OK);
+    OK(store_open_writer(fixture_path(path, "left-out"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", coarser ? 4 : 5, levels[coarser]);
-    assert_int_equal(store_close(store, &error), STATUS_OK);
-    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    OK(store_close(store, &error));
+    OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     assert_true((accuracy.chosen < accuracy.count) == !coarser);
     if (!coarser) /* a level that is finer still was left out, too */
       assert_string_equal(accuracy.left_out, "time_step = 1e-6, 5e-7");
@@ -356,21 +351,21 @@ TEST(what_is_offered_is_accepted) {
   for (size_t i = 0; i < 2; i++) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
     struct store *store = NULL;
-    assert_int_equal(store_open_writer(fixture_path(path, "offered"), &store, NULL, 0, &error), STATUS_OK);
+    OK(store_open_writer(fixture_path(path, "offered"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", 2,
               (const struct level[]){{"1e-6", moves[i], 1e-4, 10, true, true, 1e-6},
                                      {"5e-7", moves[i], 1e-4, 20, false, true, 5e-7}});
     add_study(store, campaign, "grains", 2,
               (const struct level[]){{"0.01069", 0.06, 1e-4, 10, true, false, 0.01069},
                                      {"0.008", 0.05, 1e-4, 20, false, false, 0.008}});
-    assert_int_equal(store_close(store, &error), STATUS_OK);
+    OK(store_close(store, &error));
     assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
     static const char words[] = "such as `accuracy: {quantity: largest_fraction, within: ";
     const char *offer = strstr(error.message, words);
     assert_true(!offer == (i == 1));
     if (offer) {
       campaign->accuracy_within = strtod(offer + strlen(words), NULL);
-      assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_OK);
+      OK(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error));
     }
     campaign_free(campaign);
   }
@@ -383,15 +378,15 @@ TEST(a_finer_setting_that_would_be_marked_is_none) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
-  assert_int_equal(store_open_writer(fixture_path(path, "grains"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "grains"), &store, NULL, 0, &error));
   add_study(store, campaign, "grains", 5,
             (const struct level[]){{"0.0112", 0.03, 1e-4, 5, true, false, 0.0112},
                                    {"0.008", 0.02, 1e-4, 10, false, false, 0.008},
                                    {"0.0056", 0.014, NAN, NAN, false, false, 0.0056},
                                    {"0.002", 0.01, NAN, NAN, false, false, 0.002},
                                    {"0.001", 0.007, NAN, NAN, false, false, 0.001}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.0056") == 0);
@@ -411,7 +406,7 @@ TEST(a_study_without_the_scenes_own_level) {
     struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.1}\n");
     struct store *store = NULL;
     struct accuracy accuracy;
-    assert_int_equal(store_open_writer(fixture_path(path, "unstudied"), &store, NULL, 0, &error), STATUS_OK);
+    OK(store_open_writer(fixture_path(path, "unstudied"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", 2,
               (const struct level[]){{"2e-6", 0.02, 1e-4, 5, false, false, 0},
                                      {"1e-6", 0.01, 1e-4, 10, true, false, 0}});
@@ -419,8 +414,8 @@ TEST(a_study_without_the_scenes_own_level) {
                                    {"0.01069", 0.05, 1e-4, 10, true, false, 0},
                                    {"0.0075", 0.12, 1e-4, 20, false, false, 0}};
     add_study(store, campaign, "grains", own ? 3 : 1, own ? levels : levels + 2);
-    assert_int_equal(store_close(store, &error), STATUS_OK);
-    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    OK(store_close(store, &error));
+    OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     for (size_t i = 0; i < accuracy.count; i++) {
       const struct accuracy_option *option = &accuracy.options[i];
       const bool of_grains = strcmp(option->knob, "grains") == 0 && !option->own;
@@ -439,7 +434,7 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
   struct accuracy accuracy;
   snprintf(text, sizeof text, HEAD "accuracy: {processor_time: %s}\n", time);
   struct campaign *campaign = campaign_of(text);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_string_equal(chosen->own ? "own" : chosen->setting, setting);
   assert_int_equal(chosen->seeds, seeds);
@@ -447,7 +442,7 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
   assert_true(fabs(chosen->total - total) < 1e-12);
   bool open = true;
   assert_true(chosen->total == accuracy_least(&accuracy, accuracy.point_s, &open) && !open);
-  assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_OK);
+  OK(accuracy_apply(&accuracy, campaign, &error));
   assert_int_equal(campaign->per_point, seeds);
   accuracy_clear(&accuracy);
   campaign_free(campaign);
@@ -472,7 +467,7 @@ TEST(the_least_error_in_a_time) {
   /* Two points share the time. */
   campaign = campaign_of(HEAD "vary: {threshold.strain: [1 %, 3 %]}\naccuracy: {processor_time: 60 s}\n");
   store_study(campaign, true);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_true(accuracy.point_s == 30 && accuracy.options[accuracy.chosen].open);
   assert_int_equal(accuracy.options[accuracy.chosen].seeds, 6);
   bool no_limit = false;
@@ -487,16 +482,16 @@ TEST(the_least_error_in_a_time) {
 TEST(more_time_gives_no_larger_error) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
   struct store *store = NULL;
-  assert_int_equal(store_open_writer(fixture_path(path, "more-time"), &store, NULL, 0, &error), STATUS_OK);
+  OK(store_open_writer(fixture_path(path, "more-time"), &store, NULL, 0, &error));
   add_study(store, campaign, "time_step", 2,
             (const struct level[]){{"2e-6", 0.02, 0.02, 5, false, false, 0}, {"1e-6", 0.01, 0.02, 10, true, false, 0}});
   add_study(store, campaign, "grains", 1, (const struct level[]){{"0.0075", 0.12, 0.02, 20, false, false, 0}});
-  assert_int_equal(store_close(store, &error), STATUS_OK);
+  OK(store_close(store, &error));
   double twice = HUGE_VAL; /* of the time before */
   for (campaign->accuracy_time = 15; campaign->accuracy_time < 4000; campaign->accuracy_time *= 2) {
     struct accuracy accuracy;
     bool open = false;
-    assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+    OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     const double total = accuracy.options[accuracy.chosen].total;
     assert_true(total <= twice && (total == twice || twice == HUGE_VAL));
     twice = accuracy_least(&accuracy, 2 * accuracy.point_s, &open);
@@ -513,7 +508,7 @@ TEST(a_varied_input_is_no_choice) {
   struct campaign *campaign = campaign_of(HEAD
                                           "vary: {fidelity.time_step: [1e-6 s, 5e-7 s]}\naccuracy: {within: 0.06}\n");
   store_study(campaign, false);
-  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 1);
   assert_true(accuracy.options[0].own);
   accuracy_clear(&accuracy);
