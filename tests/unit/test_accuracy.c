@@ -156,9 +156,9 @@ TEST(the_cheapest_that_reaches_it) {
 
 /* A law goes on beyond the finest level: with order 0.5 at least, at a cost by the engine's measure of work. */
 TEST(finer_than_any_level) {
-  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
-  struct accuracy accuracy;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
   OK(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error));
   add_study(store, campaign, "time_step", 4,
             (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, false, 2e-6},
@@ -175,8 +175,6 @@ TEST(finer_than_any_level) {
   assert_true(fabs(chosen->error - (0.005 + 0.02 * sqrt(0.5))) < 1e-12);
   assert_true(chosen->run_s > 15 && chosen->run_s < 25);
   OK(accuracy_apply(&accuracy, campaign, &error));
-  accuracy_clear(&accuracy);
-  campaign_free(campaign);
 }
 
 /* `within: 5 %` is 5 % of the mean that a setting gives, not of that with the scene's own ones. The mean of the finer
@@ -191,9 +189,9 @@ TEST(a_share_is_one_of_the_settings_own_mean) {
       {{{{"1e-6", 0.02, 1e-4, 10, true, false, 0}, {"5e-07", 0.02, 1e-4, 20, false, false, 0}}, {0.3, 0.9}, "5e-07"},
        {{{"2e-06", 0.03, 1e-4, 5, false, false, 0}, {"1e-6", 0.03, 1e-4, 10, true, false, 0}}, {0.3, 0.9}, "1e-6"}};
   for (size_t i = 0; i < 2; i++) {
-    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 5 %}\n");
+    CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 5 %}\n");
     struct store *store = NULL;
-    struct accuracy accuracy;
+    OWNED_BY(accuracy_clear) struct accuracy accuracy;
     OK(store_open_writer(fixture_path(path, "shares"), &store, NULL, 0, &error));
     add_study_of(store, campaign, "time_step", 2, cases[i].levels, cases[i].means);
     OK(store_close(store, &error));
@@ -201,16 +199,14 @@ TEST(a_share_is_one_of_the_settings_own_mean) {
     assert_true(accuracy.count == 2 && accuracy.chosen == 0);
     assert_string_equal(accuracy.options[0].setting, cases[i].chosen);
     assert_true(accuracy.options[0].total <= 0.05 * 0.9);
-    accuracy_clear(&accuracy);
-    campaign_free(campaign);
   }
 }
 
 /* No error of a share is larger than its distance from the farther end, here 0.7: also of settings that nothing ran. */
 TEST(no_error_is_larger_than_a_share_can_move) {
-  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
-  struct accuracy accuracy;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
   OK(store_open_writer(fixture_path(path, "capped"), &store, NULL, 0, &error));
   add_study_of(store, campaign, "time_step", 3,
                (const struct level[]){{"2e-6", 0.5, 1e-4, 5, false, false, 2e-6},
@@ -224,8 +220,6 @@ TEST(no_error_is_larger_than_a_share_can_move) {
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(fabs(accuracy.options[i].error - (strcmp(accuracy.options[i].setting, "2e-6") ? 0.7 : 0.6)) < 1e-12);
   assert_string_equal(accuracy.options[accuracy.reference].setting, "2e-6"); /* by the number, as the table shows it */
-  accuracy_clear(&accuracy);
-  campaign_free(campaign);
 }
 
 /* The scene with a step of 5e-7 s has a study of finer grains, and its level 0.00759 m is the named settings
@@ -234,7 +228,7 @@ TEST(the_study_with_the_finest_level_counts) {
   struct campaign *first = campaign_of(HEAD "accuracy: {within: 0.02}\n"),
                   *second = campaign_of(HEAD "set: {fidelity.time_step: 0.5 us}\naccuracy: {within: 0.02}\n");
   struct store *store = NULL;
-  struct accuracy accuracy;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
   OK(store_open_writer(fixture_path(path, "kin"), &store, NULL, 0, &error));
   add_study(store, first, "grains", 2,
             (const struct level[]){{"0.01069", 0.4, 1e-4, 5, true, false, 0.01069},
@@ -254,7 +248,6 @@ TEST(the_study_with_the_finest_level_counts) {
   assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < 3; i++) /* least error first */
     assert_true(fabs(accuracy.options[i].error - (const double[]){0.07, 0.12, 0.22}[i]) < 1e-12);
-  accuracy_clear(&accuracy);
   campaign_free(first);
   campaign_free(second);
 }
@@ -269,9 +262,9 @@ TEST(the_knob_that_leaves_most_is_advised) {
   } cases[] = {{0.2, "Finer levels of grains, which leaves most of it (0.2), may narrow it"},
                {0.06, "The results show no limit in time_step up to 5e-07 s"}};
   for (size_t i = 0; i < 2; i++) {
-    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+    CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
     struct store *store = NULL;
-    struct accuracy accuracy;
+    OWNED_BY(accuracy_clear) struct accuracy accuracy;
     OK(store_open_writer(fixture_path(path, "widest"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", 3,
               (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, true, 2e-6},
@@ -286,15 +279,13 @@ TEST(the_knob_that_leaves_most_is_advised) {
     assert_int_equal(accuracy_apply(&accuracy, campaign, &error), STATUS_CONTENT);
     if (!strstr(error.message, cases[i].advice) || !strstr(error.message, i ? "--knob time_step=" : "--knob grains="))
       fail_msg("%s", error.message);
-    accuracy_clear(&accuracy);
-    campaign_free(campaign);
   }
 }
 
 /* No limit is seen, and the levels differ little: the slowest law, of order 0.5, leaves at the finest level the larger
  * of 0.012/(sqrt 4 - 1) and 0.004/(sqrt 2 - 1) = 0.0097. */
 TEST(levels_that_differ_little_are_enough) {
-  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
   OK(store_open_writer(fixture_path(path, "flat"), &store, NULL, 0, &error));
@@ -313,7 +304,6 @@ TEST(levels_that_differ_little_are_enough) {
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "no limit is seen"));
   assert_non_null(strstr(error.message, "allow more"));
-  campaign_free(campaign);
 }
 
 /* A study without time for the scene's own level, which is finer than all: the slowest law bounds what it may change,
@@ -329,9 +319,9 @@ TEST(an_own_level_that_did_not_run) {
                                              {"2.5e-7", 0.004, 1e-4, 10, false, true, 2.5e-7},
                                              {"1.2e-7", 0.004, 1e-4, 20, false, true, 1.2e-7}}};
   for (size_t coarser = 0; coarser < 2; coarser++) {
-    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.05}\n");
+    CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.05}\n");
     struct store *store = NULL;
-    struct accuracy accuracy;
+    OWNED_BY(accuracy_clear) struct accuracy accuracy;
     OK(store_open_writer(fixture_path(path, "left-out"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", coarser ? 4 : 5, levels[coarser]);
     OK(store_close(store, &error));
@@ -339,8 +329,6 @@ TEST(an_own_level_that_did_not_run) {
     assert_true((accuracy.chosen < accuracy.count) == !coarser);
     if (!coarser) /* a level that is finer still was left out, too */
       assert_string_equal(accuracy.left_out, "time_step = 1e-6, 5e-7");
-    accuracy_clear(&accuracy);
-    campaign_free(campaign);
   }
 }
 
@@ -349,7 +337,7 @@ TEST(an_own_level_that_did_not_run) {
 TEST(what_is_offered_is_accepted) {
   static const double moves[] = {1e-5, 0.02};
   for (size_t i = 0; i < 2; i++) {
-    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+    CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
     struct store *store = NULL;
     OK(store_open_writer(fixture_path(path, "offered"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", 2,
@@ -367,7 +355,6 @@ TEST(what_is_offered_is_accepted) {
       campaign->accuracy_within = strtod(offer + strlen(words), NULL);
       OK(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error));
     }
-    campaign_free(campaign);
   }
 }
 
@@ -375,7 +362,7 @@ TEST(what_is_offered_is_accepted) {
  * (engine/dem/scene/conditions.c) would be marked, so they are no options. With 0.0056 m it is a
  * fifth. */
 TEST(a_finer_setting_that_would_be_marked_is_none) {
-  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
   struct accuracy accuracy;
   OK(store_open_writer(fixture_path(path, "grains"), &store, NULL, 0, &error));
@@ -396,16 +383,15 @@ TEST(a_finer_setting_that_would_be_marked_is_none) {
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "clast converge t.yaml --set fidelity.time_step='5e-07 s' --knob "
                                         "grains=0.016m,0.008m,0.004m,0.01069m --seeds 10`"));
-  campaign_free(campaign);
 }
 
 /* A later study of the grains lacks the scene's own: no setting with these grains is known to be accurate, though the
  * time step is, and none is told a smaller error than the levels of grains have. With the own level all is known. */
 TEST(a_study_without_the_scenes_own_level) {
   for (int own = 0; own < 2; own++) {
-    struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.1}\n");
+    CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.1}\n");
     struct store *store = NULL;
-    struct accuracy accuracy;
+    OWNED_BY(accuracy_clear) struct accuracy accuracy;
     OK(store_open_writer(fixture_path(path, "unstudied"), &store, NULL, 0, &error));
     add_study(store, campaign, "time_step", 2,
               (const struct level[]){{"2e-6", 0.02, 1e-4, 5, false, false, 0},
@@ -424,16 +410,14 @@ TEST(a_study_without_the_scenes_own_level) {
         assert_true(fabs(option->error - (own ? 0.06 : 0.13)) < 1e-12);
     }
     assert_int_equal(accuracy.chosen < accuracy.count, own);
-    accuracy_clear(&accuracy);
-    campaign_free(campaign);
   }
 }
 
 static void check_time(const char *time, const char *setting, int64_t seeds, double error_of_resolution) {
   char text[256];
-  struct accuracy accuracy;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
   snprintf(text, sizeof text, HEAD "accuracy: {processor_time: %s}\n", time);
-  struct campaign *campaign = campaign_of(text);
+  CAMPAIGN campaign = campaign_of(text);
   OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_string_equal(chosen->own ? "own" : chosen->setting, setting);
@@ -444,15 +428,13 @@ static void check_time(const char *time, const char *setting, int64_t seeds, dou
   assert_true(chosen->total == accuracy_least(&accuracy, accuracy.point_s, &open) && !open);
   OK(accuracy_apply(&accuracy, campaign, &error));
   assert_int_equal(campaign->per_point, seeds);
-  accuracy_clear(&accuracy);
-  campaign_free(campaign);
 }
 
 /* Half widths of a mean 0.3 are 1.025 times t(n - 1) 0.02/sqrt n: n = 3 0.0497, 4 0.0318, 6 0.0210, 8 0.0167, 16
  * 0.0107, 24 0.00845, 48 0.00581 (sums below without the 1.025). */
 TEST(the_least_error_in_a_time) {
   struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
-  struct accuracy accuracy;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
   store_study(campaign, false);
   check_time("15 s", "2e-6", 3, 0.04);    /* nothing else can be run three times */
   check_time("30 s", "2e-6", 6, 0.04);    /* 0.0610; the scene's own: 3 seeds, 0.0797 */
@@ -473,14 +455,13 @@ TEST(the_least_error_in_a_time) {
   bool no_limit = false;
   assert_true(isnan(accuracy_least(&accuracy, 14, &no_limit)));
   assert_true(accuracy_least(&accuracy, 30, &no_limit) == accuracy.options[accuracy.chosen].total && no_limit);
-  accuracy_clear(&accuracy);
   campaign_free(campaign);
 }
 
 /* Settings without a bound of their error count by its number, as all others: more time gives no larger error, and half
  * and twice of the time tell what these times give. */
 TEST(more_time_gives_no_larger_error) {
-  struct campaign *campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {processor_time: 5 s}\n");
   struct store *store = NULL;
   OK(store_open_writer(fixture_path(path, "more-time"), &store, NULL, 0, &error));
   add_study(store, campaign, "time_step", 2,
@@ -489,7 +470,7 @@ TEST(more_time_gives_no_larger_error) {
   OK(store_close(store, &error));
   double twice = HUGE_VAL; /* of the time before */
   for (campaign->accuracy_time = 15; campaign->accuracy_time < 4000; campaign->accuracy_time *= 2) {
-    struct accuracy accuracy;
+    OWNED_BY(accuracy_clear) struct accuracy accuracy;
     bool open = false;
     OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     const double total = accuracy.options[accuracy.chosen].total;
@@ -498,21 +479,16 @@ TEST(more_time_gives_no_larger_error) {
     assert_true(twice <= total);
     for (size_t i = 0; i < accuracy.count; i++)
       assert_true(accuracy.options[i].seeds == 0 || accuracy.options[i].total >= total);
-    accuracy_clear(&accuracy);
   }
-  campaign_free(campaign);
 }
 
 TEST(a_varied_input_is_no_choice) {
-  struct accuracy accuracy;
-  struct campaign *campaign = campaign_of(HEAD
-                                          "vary: {fidelity.time_step: [1e-6 s, 5e-7 s]}\naccuracy: {within: 0.06}\n");
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
+  CAMPAIGN campaign = campaign_of(HEAD "vary: {fidelity.time_step: [1e-6 s, 5e-7 s]}\naccuracy: {within: 0.06}\n");
   store_study(campaign, false);
   OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   assert_int_equal(accuracy.count, 1);
   assert_true(accuracy.options[0].own);
-  accuracy_clear(&accuracy);
-  campaign_free(campaign);
 }
 
 TEST(without_a_study_the_command_is_named) {

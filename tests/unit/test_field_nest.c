@@ -1,9 +1,6 @@
 /* Tables that contain tables: paths, places, conditions, defaults and order of the rows. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "schemas/field.h"
+#include "schemas/rows.h"
 #include "tests/support/check.h"
 
 /* Two bodies of one kind, each of a material; a module has inputs in two sections. */
@@ -32,49 +29,28 @@ static const char *const draws[] = {"ranked", "random", NULL};
 
 #define IN(type, member) .offset = offsetof(struct type, member)
 static const struct field rock_rows[] = {
-    {.path = "strength",
-     .kind = FIELD_REAL,
-     .unit = "Pa",
-     IN(rock, strength),
-     .maximum = 1e9,
-     .number = NAN,
-     .flags = FIELD_REQUIRED,
-     .when = "../solid=true",
-     .doc = "Strength."},
-    {.path = "grain", .kind = FIELD_REAL, .unit = "m", IN(rock, grain), .maximum = 1, .number = 0.5, .doc = "Grain."},
+    REAL_OF(rock, strength, strength, "Pa", NAN, 0, 1e9, .flags = FIELD_REQUIRED, .when = "../solid=true",
+            .doc = "Strength."),
+    REAL_OF(rock, grain, grain, "m", 0.5, 0, 1, .doc = "Grain."),
 };
 static const struct field_table rocks = FIELD_TABLE(rock_rows, struct rock, "rock", "A rock.");
 
 static const struct field body_rows[] = {
-    {.path = "shape", .kind = FIELD_CHOICE, IN(body, shape), .choices = shapes, .doc = "Outline."},
-    {.path = "radius",
-     .kind = FIELD_REAL,
-     .unit = "m",
-     IN(body, radius),
-     .maximum = 9,
-     .number = 3,
-     .when = "shape=sphere",
-     .doc = "Radius."},
-    {.path = "solid", .kind = FIELD_BOOLEAN, IN(body, solid), .number = 1, .maximum = 1, .doc = "Solid."},
+    ROW_OF(body, shape, shape, FIELD_CHOICE, NULL, .choices = shapes, .doc = "Outline."),
+    REAL_OF(body, radius, radius, "m", 3, 0, 9, .when = "shape=sphere", .doc = "Radius."),
+    ROW_OF(body, solid, solid, FIELD_BOOLEAN, NULL, .number = 1, .maximum = 1, .doc = "Solid."),
     {.path = "rock", IN(body, rock), .nest = &rocks, .flags = FIELD_DERIVED, .doc = "The named rock's unless given."},
 };
 static const struct field_table bodies = FIELD_TABLE(body_rows, struct body, "body", "A body.");
 
 static const struct field module_rows[] = {
-    {.path = "speed.step",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     IN(module, step),
-     .maximum = 1,
-     .number = 0.1,
-     .when = "/target.solid=true",
-     .doc = "Step."},
-    {.path = "flaws.draw", .kind = FIELD_CHOICE, IN(module, draw), .choices = draws, .number = 1, .doc = "Draw."},
+    REAL_OF(module, speed.step, step, "1", 0.1, 0, 1, .when = "/target.solid=true", .doc = "Step."),
+    ROW_OF(module, flaws.draw, draw, FIELD_CHOICE, NULL, .number = 1, .choices = draws, .doc = "Draw."),
 };
 static const struct field_table modules = FIELD_TABLE(module_rows, struct module, "module", "A module.");
 
 static const struct field scene_rows[] = {
-    {.path = "impact", .kind = FIELD_BOOLEAN, IN(scene, impact), .number = 1, .maximum = 1, .doc = "Impact."},
+    ROW_OF(scene, impact, impact, FIELD_BOOLEAN, NULL, .number = 1, .maximum = 1, .doc = "Impact."),
     {.path = "target", IN(scene, target), .nest = &bodies},
     {.path = "projectile",
      IN(scene, projectile),
@@ -85,14 +61,8 @@ static const struct field scene_rows[] = {
                                    {.path = "shape", .number = 1, .when = "target.solid=true"},
                                    {0}}},
     {IN(scene, module), .nest = &modules, .only = "!speed"},
-    {.path = "speed.threads",
-     .kind = FIELD_INTEGER,
-     .unit = "1",
-     IN(scene, threads),
-     .minimum = 1,
-     .maximum = 64,
-     .number = 1,
-     .doc = "Threads."},
+    ROW_OF(scene, speed.threads, threads, FIELD_INTEGER, "1", .number = 1, .minimum = 1, .maximum = 64,
+           .doc = "Threads."),
     {IN(scene, module), .nest = &modules, .only = "speed"},
 };
 static const struct field_table nested = FIELD_TABLE(scene_rows, struct scene, "scene", "Two bodies.");

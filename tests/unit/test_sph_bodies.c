@@ -1,7 +1,4 @@
 /* Bodies before the first step: masses, ids, placement, overlap, motion, grips, damped sides; refusals. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/sph/body/bodies.h"
 #include "tests/support/check.h"
@@ -25,7 +22,7 @@ TEST(masses_add_up_and_ids_follow_bodies) {
   bodies[2].shape.centre[1] = 1;
   bodies[1].lattice.turned = true; /* no corner, but a body like others */
   struct sph_range range[3];
-  struct sph_particles *p = NULL;
+  SPH_PARTICLES *p = NULL;
   assert_int_equal(sph_bodies_make(bodies, 3, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &p, range, NULL), STATUS_OK);
   size_t next = 0;
   for (size_t b = 0; b < 3; b++) {
@@ -44,7 +41,6 @@ TEST(masses_add_up_and_ids_follow_bodies) {
   assert_int_equal(next, p->n);
   assert_int_equal(range[1].n, 37);
   assert_true(p->stress[5] && p->damage_cbrt && !p->held && !p->damping && !p->distention);
-  sph_particles_free(p);
 }
 
 /* h^3 is proportional to the mass where particles differ. */
@@ -53,7 +49,7 @@ TEST(graded_bodies_have_graded_h) {
   body.lattice = (struct sph_lattice){.particles = NAN,
                                       .grading = {.fine = 4e-3, .point = {0, 0, 0.2}, .radius = 0.01, .growth = 0.12}};
   struct sph_range range;
-  struct sph_particles *p = NULL;
+  SPH_PARTICLES *p = NULL;
   assert_int_equal(sph_bodies_make(&body, 1, 0, &p, &range, NULL), STATUS_OK);
   double mass = 0, least = HUGE_VAL, most = 0;
   for (size_t i = 0; i < p->n; i++) {
@@ -64,7 +60,6 @@ TEST(graded_bodies_have_graded_h) {
   }
   assert_true(fabs(mass / (2000 * 0.1 * 0.2 * 0.4) - 1) < 1e-12 && most > 3 * least);
   assert_true(fabs(least / (1.3 * 4e-3) - 1) < 0.02); /* volumes are scaled so that they add up */
-  sph_particles_free(p);
 }
 
 TEST(one_particle_is_a_body) {
@@ -94,7 +89,7 @@ TEST(the_same_bits_each_time) {
   for (int kind = 0; kind < 3; kind++) {
     struct sph_body body = sphere(1, 700, 1);
     body.lattice = (struct sph_lattice){.kind = kind, .particles = 700, .turned = true, .seed = 12, .body = 1};
-    struct sph_particles *p = NULL, *again = NULL, *other = NULL, *next = NULL;
+    SPH_PARTICLES *p = NULL, *again = NULL, *other = NULL, *next = NULL;
     assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, NULL), STATUS_OK);
     assert_int_equal(sph_bodies_make(&body, 1, 0, &again, NULL, NULL), STATUS_OK);
     body.lattice.seed = 13;
@@ -109,10 +104,6 @@ TEST(the_same_bits_each_time) {
     /* points follow each other along rows: another seed, another direction */
     const double row = p->x[351] - p->x[350], turned = other->x[351] - other->x[350];
     assert_true(fabs(row - turned) > 0.01 * hypot(row, p->y[351] - p->y[350]));
-    sph_particles_free(p);
-    sph_particles_free(again);
-    sph_particles_free(other);
-    sph_particles_free(next);
   }
 }
 
@@ -157,21 +148,19 @@ TEST(projectiles_are_aimed) {
 TEST(overlaps_are_refused) {
   struct sph_body bodies[2] = {sphere(0.03, 500, 2700), sphere(0.003, 20, 1185)};
   bodies[1].shape.centre[2] = 0.0325; /* 0.5 mm too near */
-  struct sph_particles *p = NULL;
-  struct error error = {0};
+  SPH_PARTICLES *p = NULL;
   assert_int_equal(sph_bodies_make(bodies, 2, 0, &p, NULL, &error), STATUS_CONTENT);
   assert_null(p);
   assert_string_equal(error.message, "the target and the projectile overlap by 0.0005 m");
   bodies[1].shape.centre[2] = 0.033; /* they touch */
-  assert_int_equal(sph_bodies_make(bodies, 2, 0, &p, NULL, &error), STATUS_OK);
-  sph_particles_free(p);
+  OK(sph_bodies_make(bodies, 2, 0, &p, NULL, &error));
 }
 
 TEST(bodies_move) {
   struct sph_body bodies[2] = {bar, sphere(0.05, 300, 1000)};
   bodies[1].shape.centre[0] = 3;
   struct sph_range range[2];
-  struct sph_particles *p = NULL;
+  SPH_PARTICLES *p = NULL;
   assert_int_equal(sph_bodies_make(bodies, 2, 0, &p, range, NULL), STATUS_OK);
   const double velocity[3] = {1, -2, 3}, centre[3] = {0, 0, 0.1}, axis[3] = {0, 0, 2}, spin[3] = {5, 6, 7};
   sph_bodies_move(p, range[1], velocity);
@@ -195,12 +184,11 @@ TEST(bodies_move) {
   assert_true(turn > 0);
   for (int k = 0; k < 3; k++)
     assert_true(fabs(momentum[k]) < 1e-9); /* about the centre of mass */
-  sph_particles_free(p);
 }
 
 TEST(ends_are_held_and_sides_damped) {
   struct sph_range range;
-  struct sph_particles *p = NULL;
+  SPH_PARTICLES *p = NULL;
   assert_int_equal(sph_bodies_make(&bar, 1, SPH_WITH_HELD | SPH_WITH_DAMPING, &p, &range, NULL), STATUS_OK);
   const struct sph_middle middle = {.axis = {0, 0, -3}, .half = 0.15};
   const size_t held = sph_bodies_hold(p, range, &middle, SPH_HELD_Z | SPH_HELD_X);
@@ -219,12 +207,10 @@ TEST(ends_are_held_and_sides_damped) {
   }
   assert_true(held == count && held > 100 && held < p->n);
   assert_true(damped > 100 && damped < p->n && free_top > 0);
-  sph_particles_free(p);
 }
 
 TEST(absurd_bodies_are_refused) {
   struct sph_particles *p = NULL;
-  struct error error = {0};
   struct sph_body body = sphere(1, 1e12, 1000);
   assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_MEMORY);
   assert_non_null(strstr(error.message, "1e+12 particles"));
@@ -235,7 +221,7 @@ TEST(absurd_bodies_are_refused) {
   for (double size = 1e-6; size < 1e7; size *= 100) {
     body = sphere(size, 300, 1000);
     struct sph_range range;
-    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, &range, &error), STATUS_OK);
+    OK(sph_bodies_make(&body, 1, 0, &p, &range, &error));
     assert_int_equal(p->n, 300);
     assert_true(fabs(range.nearest / size - range.nearest / range.spacing * cbrt(4 * M_PI / 900)) < 1e-9);
     sph_particles_free(p);

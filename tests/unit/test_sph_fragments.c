@@ -1,8 +1,5 @@
 /* Fragments of SPH particles: against brute force over all pairs; each rule of BA95 section 4.4 separately; spin of
  * asymmetric fragments; particles that are far away or not finite; no particles. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/outcome.h"
 #include "engine/random.h"
@@ -26,7 +23,6 @@ static struct sph_particles *make(size_t n, int arrays) {
 
 static struct sph_fragments find(const struct sph_particles *p, const struct sph_fragments_options *options) {
   struct sph_fragments pieces;
-  struct error error = {0};
   if (sph_fragments_find(p, options, &pieces, &error))
     fail_msg("%s", error.message);
   return pieces;
@@ -99,7 +95,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
 
 TEST(equals_brute_force) {
   enum { N = 260 };
-  struct sph_particles *p = make(N, SPH_WITH_DAMAGE);
+  SPH_PARTICLES *p = make(N, SPH_WITH_DAMAGE);
   long group[N];
   uint8_t part[N], left_out[N];
   size_t cores = 0, layers = 0, dust = 0, several = 0;
@@ -132,7 +128,7 @@ TEST(equals_brute_force) {
       p->body[i] = i < 200 ? 0 : i < 230 ? 1 : 2;
       left_out[i] = p->body[i] == 2 && bodies[2].left_out;
     }
-    struct sph_fragments found = find(p, &o);
+    OWNED_BY(sph_fragments_clear) struct sph_fragments found = find(p, &o);
     brute(p, &o, left_out, group, part);
     double largest_core = 0, mass = 0;
     for (size_t i = 0; i < N; i++) {
@@ -162,17 +158,15 @@ TEST(equals_brute_force) {
     assert_true(found.core_largest == largest_core && found.core_second <= largest_core);
     for (size_t f = 1; f < found.count; f++)
       assert_true(found.fragments[f - 1].mass >= found.fragments[f].mass);
-    sph_fragments_clear(&found);
   }
   if (!(cores > 1000 && layers > 500 && dust > 500 && several > 30)) /* the draws exercise the rules */
     fail_msg("%zu core, %zu layer, %zu dust, %zu times more than 5 fragments", cores, layers, dust, several);
-  sph_particles_free(p);
 }
 
 /* Positions and states decide, not the numbering: every permutation gives the same partition (masses distinct). */
 TEST(numbering_does_not_matter) {
   enum { N = 500 };
-  struct sph_particles *p = make(N, SPH_WITH_DAMAGE), *q = make(N, SPH_WITH_DAMAGE);
+  SPH_PARTICLES *p = make(N, SPH_WITH_DAMAGE), *q = make(N, SPH_WITH_DAMAGE);
   struct sph_fragments_options o = sph_fragments_default();
   for (size_t i = 0; i < N; i++) {
     size_t k = (i * 237 + 11) % N; /* 237 has no factor in common with 500 */
@@ -183,16 +177,12 @@ TEST(numbering_does_not_matter) {
     p->damage_cbrt[i] = q->damage_cbrt[k] = draw(3, i, 3) < 0.5;
     p->mass[i] = q->mass[k] = 1 + draw(3, i, 4);
   }
-  struct sph_fragments a = find(p, &o), b = find(q, &o);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments a = find(p, &o), b = find(q, &o);
   assert_int_equal(a.count, b.count);
   for (size_t i = 0; i < N; i++) {
     assert_int_equal(a.label[i], b.label[(i * 237 + 11) % N]);
     assert_int_equal(a.part[i], b.part[(i * 237 + 11) % N]);
   }
-  sph_fragments_clear(&a);
-  sph_fragments_clear(&b);
-  sph_particles_free(p);
-  sph_particles_free(q);
 }
 
 /* A row of particles 0.9 apart, h = 1: unbroken 0-3, broken 4-6, unbroken 7-8. */
@@ -206,7 +196,7 @@ static struct sph_particles *row(void) {
 }
 
 TEST(only_one_layer_joins_and_nearest_decides) {
-  struct sph_particles *p = row();
+  SPH_PARTICLES *p = row();
   struct sph_fragments_options o = sph_fragments_default();
   struct sph_fragments with = find(p, &o);
   const uint32_t label[9] = {0, 0, 0, 0, 0, 2, 1, 1, 1};
@@ -242,11 +232,10 @@ TEST(only_one_layer_joins_and_nearest_decides) {
   tie = find(p, &o);
   assert_int_equal(tie.label[5], tie.label[4]);
   sph_fragments_clear(&tie);
-  sph_particles_free(p);
 }
 
 TEST(static_strength_breaks) {
-  struct sph_particles *p = row();
+  SPH_PARTICLES *p = row();
   const struct sph_fragments_body body = {.static_strength = 17e6};
   struct sph_fragments_options o = sph_fragments_default();
   o.bodies = &body;
@@ -281,12 +270,11 @@ TEST(static_strength_breaks) {
   assert_int_equal(f.part[2], SPH_FRAGMENTS_CORE);
   assert_int_equal(f.broken, 2);
   sph_fragments_clear(&f);
-  sph_particles_free(p);
 }
 
 /* Two blocks in contact are two fragments unless across_bodies is set; a body that is left out is never counted. */
 TEST(bodies_touch_or_are_left_out) {
-  struct sph_particles *p = make(10, 0);
+  SPH_PARTICLES *p = make(10, 0);
   struct sph_fragments_options o = sph_fragments_default();
   struct sph_fragments_body bodies[2] = {{false, NAN}, {false, NAN}};
   for (size_t i = 0; i < 10; i++) {
@@ -312,7 +300,6 @@ TEST(bodies_touch_or_are_left_out) {
   assert_int_equal(f.label[0], UINT32_MAX);
   assert_int_equal(f.part[0], SPH_FRAGMENTS_LEFT_OUT);
   sph_fragments_clear(&f);
-  sph_particles_free(p);
 }
 
 static void near(double a, double b, double scale) {
@@ -380,7 +367,7 @@ TEST(turning_pieces) {
 /* An ellipsoid of axes 3:2:1.5 cut from a fine lattice has these ratios; ejecta carry their energy relative to it. */
 TEST(shape_and_ejecta) {
   size_t n = 0;
-  struct sph_particles *p = make(60000, 0);
+  SPH_PARTICLES *p = make(60000, 0);
   for (int a = -30; a <= 30; a++)
     for (int b = -20; b <= 20; b++)
       for (int c = -15; c <= 15; c++) {
@@ -398,13 +385,11 @@ TEST(shape_and_ejecta) {
   p->n = n;
   struct sph_fragments_options o = sph_fragments_default();
   o.link_length = 1.1;
-  struct sph_fragments f = find(p, &o);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
   assert_int_equal(f.count, 3);
   assert_true(fabs(f.axis_ratio[0] - 2.0 / 3) < 0.005 &&
               fabs(f.axis_ratio[1] - 0.5) < 0.005); /* a lattice's outline: 1/15^2 */
   assert_int_equal(f.resolved, 1);
-  sph_fragments_clear(&f);
-  sph_particles_free(p);
 }
 
 /* A particle of the lattice at integer places, turned by the angles of 3-4-5 triangles about two axes. */
@@ -420,12 +405,11 @@ static void put_turned(struct sph_particles *p, double a, double b, double c) {
 static void expect_lengths(struct sph_particles *p, const double length[3], double tolerance) {
   struct sph_fragments_options o = sph_fragments_default();
   o.link_length = 1.1;
-  struct sph_fragments f = find(p, &o);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
   assert_int_equal(f.count, 1);
   for (int a = 0; a < 3; a++)
     if (!(fabs(f.fragments[0].length[a] - length[a]) <= tolerance))
       fail_msg("length %d: %g, expected %g +- %g", a, f.fragments[0].length[a], length[a], tolerance);
-  sph_fragments_clear(&f);
   sph_particles_free(p);
 }
 
@@ -493,7 +477,7 @@ TEST(ratios_of_coarse_boxes) {
     }
     for (int d = 0; d < 3; d++)
       axis[2][d] = axis[0][(d + 1) % 3] * axis[1][(d + 2) % 3] - axis[0][(d + 2) % 3] * axis[1][(d + 1) % 3];
-    struct sph_particles *p = make(200, 0);
+    SPH_PARTICLES *p = make(200, 0);
     p->n = 0;
     for (int i = -6; i <= 6; i++)
       for (int j = -6; j <= 6; j++)
@@ -507,12 +491,10 @@ TEST(ratios_of_coarse_boxes) {
         }
     struct sph_fragments_options o = sph_fragments_default();
     o.link_length = 2; /* corners hang together */
-    struct sph_fragments f = find(p, &o);
+    OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
     const double *length = f.fragments[0].length;
     middle += length[1] / length[0] / BOXES;
     shortest += length[2] / length[0] / BOXES;
-    sph_fragments_clear(&f);
-    sph_particles_free(p);
   }
   if (!(fabs(middle - 8 / 12.0) <= 0.02 && fabs(shortest - 5 / 12.0) <= 0.02))
     fail_msg("boxes 12:8:5: mean b/a %g and c/a %g", middle, shortest);
@@ -520,7 +502,7 @@ TEST(ratios_of_coarse_boxes) {
 
 TEST(periodic_box) {
   /* a rod across the boundary x = 0 that turns about z, and a bar that spans the box along y */
-  struct sph_particles *p = make(24, 0);
+  SPH_PARTICLES *p = make(24, 0);
   struct sph_fragments_options o = sph_fragments_default();
   o.periodic[0] = 20;
   o.periodic[1] = 9;
@@ -534,34 +516,30 @@ TEST(periodic_box) {
     p->vz[i] = 2 * (p->x[i] - 10.25); /* -2 about y */
     p->vx[i] = 0.01 * p->y[i];        /* a shear, no turning */
   }
-  struct sph_fragments f = find(p, &o);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
   assert_int_equal(f.count, 2);
   assert_true(f.fragments[0].count == 20 && f.fragments[1].count == 4);
   near(f.fragments[1].position[0], 20.15, 100);
   near(f.fragments[1].spin[2], 0.5, 10);
   near(f.fragments[0].spin[1], -2, 10);
   assert_true(f.fragments[0].spin[0] == 0 && f.fragments[0].spin[2] == 0);
-  sph_fragments_clear(&f);
-  sph_particles_free(p);
 }
 
 /* A grid over the extent would need more than 1e27 cells; a particle that is not finite has no neighbours. */
 TEST(far_flung_and_not_finite) {
-  struct sph_particles *p = row();
+  SPH_PARTICLES *p = row();
   struct sph_fragments_options o = sph_fragments_default();
   p->x[8] = 1e9;
   p->y[7] = -1e300;
   p->x[0] = NAN;
   p->vx[1] = INFINITY;
-  struct sph_fragments f = find(p, &o);
+  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
   assert_int_equal(f.label[2], f.label[4]);
   assert_int_equal(f.fragments[0].count, 3); /* 2, 3 and their layer 4 */
   assert_int_equal(f.count, 7);
   assert_int_equal(f.part[0], SPH_FRAGMENTS_SINGLE);
   assert_int_equal(f.part[1], SPH_FRAGMENTS_SINGLE);
   assert_int_equal(f.part[8], SPH_FRAGMENTS_CORE);
-  sph_fragments_clear(&f);
-  sph_particles_free(p);
 }
 
 TEST(nothing_all_dust_all_one) {
@@ -592,7 +570,7 @@ TEST(nothing_all_dust_all_one) {
 
 /* With the initial smoothing lengths, expanding matter is not linked over larger distances. */
 TEST(h_may_be_the_initial_one) {
-  struct sph_particles *p = row();
+  SPH_PARTICLES *p = row();
   double h[9];
   struct sph_fragments_options o = sph_fragments_default();
   for (int i = 0; i < 9; i++) {
@@ -606,5 +584,4 @@ TEST(h_may_be_the_initial_one) {
   f = find(p, &o);
   assert_int_equal(f.count, 3);
   sph_fragments_clear(&f);
-  sph_particles_free(p);
 }

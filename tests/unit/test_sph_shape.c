@@ -1,7 +1,4 @@
 /* True shapes: volumes, places and distances against each other and against plain geometry; gaps, overlaps, misses. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/random.h"
 #include "engine/sph/body/bodies.h"
