@@ -315,8 +315,9 @@ const struct engine_kind dem_engine = {
         "names at each input.",
     /* 2: the reference side of a contact has a floor. 3: contacts that begin with a break (contact.bonded off) are in
      * the ledger; grains too fast for the time step end a run. 4: Gear's first coefficients; thresholds by place;
-     * stop.least_time. 5: thresholds of threshold_energy; strength is not an average; range of slopes with breaks. */
-    .results_version = 5,
+     * stop.least_time. 5: thresholds of threshold_energy; strength is not an average; range of slopes with breaks.
+     * 6: upright_share counts common sides. */
+    .results_version = 6,
     .inputs = &dem_inputs,
     .results = &dem_results,
     .knobs = knobs,

@@ -2,7 +2,7 @@
 #define CHECK_OWN_MAIN
 #include "tests/support/golden.h"
 
-enum { RESULTS_VERSION = 5 };
+enum { RESULTS_VERSION = 6 };
 #define GOLDEN_DISC  "0e38e047ed1ddd66cbca46b75860a7be"
 #define GOLDEN_BLOCK "d54d3c9f0c78168ccf172e282cd7478e"
 

@@ -9,6 +9,30 @@ struct figures {
   double modulus, strength, strain, residue, drop, upright, triangle, broken;
 };
 
+/* Cracks within 30 degrees of the load, counted from the outlines: the crack joins the two vertices that both grains
+ * have. */
+static double upright_by_outlines(const struct dem_run *run) {
+  const struct dem_tessellation *t = run->tessellation;
+  const struct dem_break *log;
+  const size_t breaks = dem_system_breaks(run->system, &log);
+  double upright = 0, all = 0;
+  for (size_t k = 0; k < breaks; k++) {
+    if (log[k].time > run->state.time_peak)
+      continue;
+    const uint32_t *pair = t->pair[log[k].beam];
+    struct dem_point end[2] = {{0, 0}, {0, 0}};
+    size_t shared = 0;
+    for (uint32_t v = t->first_vertex[pair[0]]; v < t->first_vertex[pair[0] + 1]; v++)
+      for (uint32_t w = t->first_vertex[pair[1]]; w < t->first_vertex[pair[1] + 1]; w++)
+        if (hypot(t->vertex[v].x - t->vertex[w].x, t->vertex[v].y - t->vertex[w].y) < 1e-9 * run->inputs.grain.spacing)
+          end[shared++ % 2] = t->vertex[v];
+    assert_int_equal(shared, 2);
+    all += 1;
+    upright += atan2(fabs(end[1].x - end[0].x), fabs(end[1].y - end[0].y)) < M_PI / 6;
+  }
+  return upright / all;
+}
+
 static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
   struct dem_run *run;
   OK(dem_run_create(inputs, seed, &run, &error));
@@ -26,6 +50,7 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
                       .upright = r.upright_share,
                       .triangle = r.end_triangle_share,
                       .broken = r.broken_share};
+  assert_true(fabs(f.upright - upright_by_outlines(run)) < 1e-12);
   /* Linear: largest departure from the fitted line up to 70 % of the failure strain, over the strength. The line's
    * intercept is what the samples between 10 and 50 % leave. */
   double n = 0, shift = 0;

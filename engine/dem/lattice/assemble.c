@@ -68,25 +68,6 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
   return STATUS_OK;
 }
 
-/* The side of cell i that is also a side of cell j, by its two vertices; false if there is none. */
-static bool common_side(const struct dem_tessellation *t, uint32_t i, uint32_t j, double tolerance, uint32_t *side_i,
-                        uint32_t *side_j) {
-  const uint32_t fi = t->first_vertex[i], ni = t->first_vertex[i + 1] - fi;
-  const uint32_t fj = t->first_vertex[j], nj = t->first_vertex[j + 1] - fj;
-  for (uint32_t a = 0; a < ni; a++)
-    for (uint32_t b = 0; b < nj; b++) {
-      const struct dem_point *p = &t->vertex[fi + a], *q = &t->vertex[fi + (a + 1) % ni];
-      const struct dem_point *r = &t->vertex[fj + b], *u = &t->vertex[fj + (b + 1) % nj];
-      if (fabs(p->x - u->x) <= tolerance && fabs(p->y - u->y) <= tolerance && fabs(q->x - r->x) <= tolerance &&
-          fabs(q->y - r->y) <= tolerance) {
-        *side_i = a;
-        *side_j = b;
-        return true;
-      }
-    }
-  return false;
-}
-
 /* The window of one grain: the vertices before, at either end of, and after its common side. */
 static void window(struct dem_system *s, struct dem_bond_block *block, size_t lane, int k, uint32_t grain,
                    uint32_t side) {
@@ -162,12 +143,13 @@ static void contact(struct dem_system *s, const struct dem_tessellation *t, size
   if (s->in->contact.law == DEM_CONTACT_OFF || side < shortest_window * size)
     return;
 
-  uint32_t side_i, side_j;
-  if (!common_side(t, i, j, 1e-9 * size, &side_i, &side_j))
+  uint32_t common[2];
+  struct dem_point along;
+  if (!dem_tessellation_side(t, i, j, common, &along))
     return;
   s->windowed[pair] = 1;
-  window(s, block, lane, 0, i, side_i);
-  window(s, block, lane, 1, j, side_j);
+  window(s, block, lane, 0, i, common[0]);
+  window(s, block, lane, 1, j, common[1]);
   dem_breaking_set_contact(s, (int32_t)pair, block, lane);
 }
 

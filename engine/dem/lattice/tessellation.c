@@ -457,6 +457,24 @@ status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_
   return STATUS_OK;
 }
 
+bool dem_tessellation_side(const struct dem_tessellation *t, uint32_t i, uint32_t j, uint32_t side[2],
+                           struct dem_point *along) {
+  const uint32_t fi = t->first_vertex[i], ni = t->first_vertex[i + 1] - fi;
+  const uint32_t fj = t->first_vertex[j], nj = t->first_vertex[j + 1] - fj;
+  const double tolerance = 1e-9 * sqrt(t->area[i]);
+  for (side[0] = 0; side[0] < ni; side[0]++)
+    for (side[1] = 0; side[1] < nj; side[1]++) {
+      const struct dem_point *p = &t->vertex[fi + side[0]], *q = &t->vertex[fi + (side[0] + 1) % ni];
+      const struct dem_point *r = &t->vertex[fj + side[1]], *u = &t->vertex[fj + (side[1] + 1) % nj];
+      if (fabs(p->x - u->x) <= tolerance && fabs(p->y - u->y) <= tolerance && fabs(q->x - r->x) <= tolerance &&
+          fabs(q->y - r->y) <= tolerance) {
+        *along = (struct dem_point){q->x - p->x, q->y - p->y};
+        return true;
+      }
+    }
+  return false;
+}
+
 void dem_tessellation_free(struct dem_tessellation *t) {
   if (!t)
     return;

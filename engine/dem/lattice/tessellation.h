@@ -70,4 +70,8 @@ status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tesse
 /* Joins two bodies into one, without pairs between them. The caller still owns both inputs. */
 status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
                              struct dem_tessellation **out, struct error *error);
+/* The common side of cells i and j: its number in each (side k goes from vertex k to the next), and its vector (m),
+ * counter-clockwise for cell i. False if there is none. */
+bool dem_tessellation_side(const struct dem_tessellation *t, uint32_t i, uint32_t j, uint32_t side[2],
+                           struct dem_point *along);
 void dem_tessellation_free(struct dem_tessellation *tessellation); /* NULL is fine */

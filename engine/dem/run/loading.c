@@ -186,7 +186,10 @@ static void pattern(const struct dem_run *run, struct dem_results *results) {
     }
     broken[inside] += 1;
     all += 1;
-    upright += fabs(b.y - a.y) < 0.57735026918962576 * fabs(b.x - a.x); /* beam within 30 degrees of level */
+    uint32_t common[2];
+    struct dem_point side;
+    upright += dem_tessellation_side(t, pair[0], pair[1], common, &side) &&
+               fabs(side.x) < 0.57735026918962576 * fabs(side.y); /* within 30 degrees of the load */
   }
   results->upright_share = all > 0 ? upright / all : (double)NAN;
   results->end_triangle_share = broken[0] > 0 && beams[1] > 0 ? (broken[1] / beams[1]) / (broken[0] / beams[0])

@@ -2,7 +2,6 @@
 #include "engine/dem/run/run.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { BODY_FIRST = 0, BODY_SECOND = 1 }; /* streams of the lattice */
 
@@ -52,22 +51,6 @@ static uint32_t grain_nearest(const struct dem_tessellation *t, double x, double
   return nearest;
 }
 
-/* The common side of two neighbours, counter-clockwise for the grain `charge`. */
-static bool common_side(const struct dem_tessellation *t, uint32_t charge, uint32_t other, struct dem_point *side) {
-  uint32_t start = t->first_vertex[charge], end = t->first_vertex[charge + 1];
-  for (uint32_t k = start; k < end; k++) {
-    struct dem_point p = t->vertex[k], q = t->vertex[k + 1 < end ? k + 1 : start];
-    int shared = 0;
-    for (uint32_t v = t->first_vertex[other]; v < t->first_vertex[other + 1]; v++)
-      shared += memcmp(&t->vertex[v], &p, sizeof p) == 0 || memcmp(&t->vertex[v], &q, sizeof q) == 0;
-    if (shared == 2) {
-      *side = (struct dem_point){q.x - p.x, q.y - p.y};
-      return true;
-    }
-  }
-  return false;
-}
-
 /* K99 section 3.3.1. Each neighbour of the central grain starts perpendicular to their common side, with a speed
  * proportional to side over mass, so that the momenta, sums of side x normal around a closed polygon, add up to zero;
  * the kinetic energies add up to E_o. The central grain "plays the role of the explosive": the paper gives it neither a
@@ -83,8 +66,9 @@ static status charge(struct dem_run *run, struct error *error) {
       if (t->pair[p][0] != run->charge && t->pair[p][1] != run->charge)
         continue;
       uint32_t other = t->pair[p][t->pair[p][0] == run->charge];
+      uint32_t common[2];
       struct dem_point side;
-      if (!common_side(t, run->charge, other, &side))
+      if (!dem_tessellation_side(t, run->charge, other, common, &side))
         return status_fail(error, STATUS_INTERNAL, "the charge and its neighbour share no side");
       double mass = dem_system_grain(run->system, other).mass;
       if (pass) /* outward normal of a counter-clockwise side (dx, dy) is (dy, -dx) */
