@@ -338,7 +338,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   particles INTEGER, -- [1] Number of particles in the target (in both bodies of a collision).
   projectile_particles INTEGER, -- [1] Number of particles in the projectile or piston.
   flaws INTEGER, -- [1] Number of explicit flaws in all bodies.
-  target_mass REAL, -- [kg] Mass of the target. All mass fractions are shares of it, so they leave the projectile out.
+  target_mass REAL, -- [kg] Mass of the target, in a collision of both bodies. All mass fractions are shares of it, so they leave the projectile out.
   projectile_mass REAL, -- [kg] Mass of the projectile; off without one.
   specific_energy REAL, -- [J/kg] Q: kinetic energy of the projectile over the mass of the target; off without a projectile.
   fracture_ceased INTEGER, -- Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.
@@ -1437,7 +1437,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'specific_energy', 'J/kg', 'Q: kine
 
 INSERT INTO column_doc VALUES ('result_sph', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, fault', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'target_mass', 'kg', 'Mass of the target, in a collision of both bodies. All mass fractions are shares of it, so they leave the projectile out.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass share of the target''s particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.', 1);
 
@@ -1793,7 +1793,7 @@ INSERT INTO column_doc VALUES ('runs', 'study', NULL, '1: only studies and searc
 
 INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, 'above 0: left out of statistics. 1: beyond the prefix a stopping rule decided on; 2: excluded; 3: both', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 0);
+INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target, in a collision of both bodies. All mass fractions are shares of it, so they leave the projectile out.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'threshold_energy', 'J/m', 'Energy that would bring every beam, unbent, to its own threshold. Off without breaking.', 0);
 

@@ -96,6 +96,24 @@ TEST(flaws_are_described) {
               fabs(pascal / (want * sph_material_young_modulus(&inputs.target.material)) - 1) < 0.005); /* 3 digits */
 }
 
+/* Numbers that explain and plan tell before a run, and those of the run: flaws of a rod with ends that have none; mass
+ * and particles of slabs that are longer than asked, to repeat. */
+TEST(bodies_are_described_as_they_run) {
+  const struct sph_inputs rod = SPH_CASE("tensile-rod", "fidelity.particles=3000", "stop.end_time=0.1 us"),
+                          rings = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.gap=5 mm",
+                                           "stop.end_time=51 us");
+  struct ran ran = run_case_run(&sph_engine, &rod, 1);
+  free(ran.fragments);
+  OWNED char *text = sph_engine.describe(&rod, true);
+  const double flaws = number_behind(text, "flaws: about ");
+  print_message("flaws of a rod: %.5g described, %.5g in the run\n", flaws, (double)ran.results.sph.flaws);
+  assert_true(fabs(flaws / (double)ran.results.sph.flaws - 1) < 0.05); /* a layer of particles: 4 % of the length */
+  ran = run_case_run(&sph_engine, &rings, 1);
+  free(ran.fragments);
+  assert_true(fabs(sph_derived_particles(&rings) / (double)ran.results.sph.particles - 1) < 0.01);
+  assert_true(fabs(2 * sph_derived_target_mass(&rings) / ran.outcome.total_mass - 1) < 0.001);
+}
+
 static double described_speed(const struct sph_inputs *inputs) {
   OWNED char *text = sph_engine.describe(inputs, true);
   const double speed = number_behind(text, "of a core that does ");
@@ -280,6 +298,15 @@ TEST(stop_rules) {
   assert_int_equal(ran.count, 1);
   free(ran.fragments);
 
+  /* a boulder of 15 kg goes on breaking a pebble of 11 g when the mean damage of both no longer grows */
+  inputs = SPH_CASE("basalt-sphere", "target.radius=1 cm", "projectile.material.name=basalt", "impact.projectile=size",
+                    "projectile.radius=11 cm", "impact.speed=60 m/s", "impact.angle=0", "fidelity.particles=300",
+                    "fidelity.projectile_spacing=7", "stop.end_time=0.2 ms");
+  ran = run_case_run(&sph_engine, &inputs, 1);
+  print_message("pebble: damage %.3f, cease time %.3g s\n", ran.results.sph.mean_damage, ran.results.sph.cease_time);
+  assert_true(ran.results.sph.mean_damage > 0.9);
+  free(ran.fragments);
+
   inputs = SMALL("fidelity.energy_bound=1e-7 %");
   ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
@@ -293,6 +320,19 @@ TEST(stop_rules) {
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "energy.clamped"));
   free(ran.fragments);
+}
+
+/* A slender bar that is hit and can bend gets half a period of the first mode of a free bar, with the root 4.73004 of
+ * cos(x) cosh(x) = 1; up to L/h = 4 waves through the bar are slower. */
+TEST(bars_have_time_to_bend) {
+  const char *const box[] = {"target.shape=box", "target.depth=1 cm", "target.height=1 cm", "fidelity.particles=500"};
+  for (int slender = 0; slender < 2; slender++) {
+    const struct sph_inputs in = SPH_CASE("disruption", box[0], box[1], box[2], box[3],
+                                          slender ? "target.width=20 cm" : "target.width=4 cm");
+    const double h = 0.01, L = in.target.width, c = sph_derived_wave_speed(&in.target);
+    const double want = slender ? M_PI * sqrt(12) / (4.73004 * 4.73004) * L * L / (h * c) : 2 * L / c;
+    assert_true(fabs(in.stop.quiet_time / want - 1) < (slender ? 0.005 : 1e-12));
+  }
 }
 
 /* The largest stress of a stretch is taken from every step, not only from the samples, which are a share of the end

@@ -107,7 +107,7 @@ static double add_run(const struct sph_inputs *inputs, uint64_t seed, size_t see
     c->damage[s] += damage[s] / mass[s] / (double)seeds;
     c->speed[s] += speed[s] / (double)seeds;
   }
-  c->mean += sph_system_damage(run->system) / (double)seeds;
+  c->mean += sph_system_damage(run->system, 0, run->system->body_count) / (double)seeds;
   c->particles = run->targets;
   sph_run_free(run);
   return halfway(speed);

@@ -22,7 +22,8 @@ static const struct field rows[] = {
     COUNT(projectile_particles, "Number of particles in the projectile or piston."),
     COUNT(flaws, "Number of explicit flaws in all bodies."),
     REAL(target_mass, "kg", 0,
-         .doc = "Mass of the target. All mass fractions are shares of it, so they leave the projectile out."),
+         .doc = "Mass of the target, in a collision of both bodies. All mass fractions are shares of it, so they leave "
+                "the projectile out."),
     REAL(projectile_mass, "kg", 0, .doc = "Mass of the projectile; off without one."),
     REAL(specific_energy, "J/kg", 0,
          .doc = "Q: kinetic energy of the projectile over the mass of the target; off without a projectile."),

@@ -41,20 +41,24 @@ static status make_system(struct sph_run *run, struct error *error) {
 
 /* ---- advancing ---- */
 
-/* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
+/* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time, in all bodies
+ * together and in each: the mean of all does not show a pebble under a boulder. */
 static void look_at_damage(struct sph_run *run) {
   struct sph_state *state = &run->state;
-  double damage = sph_system_damage(run->system), time = run->system->now.time;
-  if (isnan(state->first_damage)) {
-    if (!(damage > 0))
-      return;
-    state->first_damage = time;
-    state->quiet_damage = damage;
-    state->quiet_since = time;
-  }
-  if (damage - state->quiet_damage >= run->inputs.stop.quiet_growth) {
-    state->quiet_damage = damage;
-    state->quiet_since = time;
+  const size_t bodies = (size_t)run->body_count;
+  const double time = run->system->now.time;
+  const bool begins = isnan(state->first_damage);
+  for (size_t k = 0; k <= bodies; k++) { /* 0: all */
+    const double damage = sph_system_damage(run->system, k > 0 ? k - 1 : 0, k > 0 ? k : bodies);
+    if (k == 0 && begins) {
+      if (!(damage > 0))
+        return;
+      state->first_damage = time;
+    }
+    if (begins || damage - state->quiet_damage[k] >= run->inputs.stop.quiet_growth) {
+      state->quiet_damage[k] = damage;
+      state->quiet_since = time;
+    }
   }
   if (time - state->quiet_since >= run->inputs.stop.quiet_time)
     frame_end(&state->frame, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");

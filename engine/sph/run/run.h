@@ -28,11 +28,11 @@ struct sph_sample {
 struct sph_state {
   struct frame_state frame;
   double momentum_start[3], angular_start[3];
-  double momentum_scale_start; /* kg m/s, sum |p| at the start */
-  double smallest_step;        /* s */
-  double first_damage;         /* s, NaN: none yet */
-  double quiet_damage,
-      quiet_since; /* mean damage, and the time (s) when it had this value; for the rule of stop.quiet_time */
+  double momentum_scale_start;                /* kg m/s, sum |p| at the start */
+  double smallest_step;                       /* s */
+  double first_damage;                        /* s, NaN: none yet */
+  double quiet_damage[1 + SPH_RUN_BODIES];    /* mean damage of all bodies and of each, when it last grew enough */
+  double quiet_since;                         /* s, when one of them last did; for the rule of stop.quiet_time */
   uint64_t limited[SPH_LIMITS];               /* steps that each limiter set */
   double peak_stress, peak_strain, peak_time; /* stretch */
   double mode_before, mode_time;              /* vibration: amplitude at the last check */

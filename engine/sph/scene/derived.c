@@ -82,6 +82,8 @@ struct sph_shape sph_derived_target(const struct sph_inputs *in) {
     shape.side[1] = sph_derived_thickness(in, 1, in->target.depth);
     shape.side[2] = sph_derived_thickness(in, 2, in->target.height);
   }
+  if (in->kind == SPH_COLLISION)
+    shape.length = sph_derived_thickness(in, 2, in->target.length);
   return shape;
 }
 
@@ -246,8 +248,10 @@ double sph_derived_cfl(const struct sph_inputs *in) {
 
 double sph_derived_particles(const struct sph_inputs *in) {
   double target = (double)in->fidelity.particles;
-  if (in->kind == SPH_COLLISION)
-    return 2 * target;
+  if (in->kind == SPH_COLLISION) {
+    const struct sph_shape body = sph_derived_target(in);
+    return 2 * sph_shape_volume(&body) / pow(sph_derived_spacing(in), 3);
+  }
   if (in->kind == SPH_PISTON) {
     struct sph_shape plate = sph_derived_target(in), piston = sph_derived_piston(in);
     return (sph_shape_volume(&plate) + sph_shape_volume(&piston)) / pow(sph_derived_spacing(in), 3);
@@ -280,4 +284,13 @@ double sph_derived_crossing(const struct sph_inputs *in) {
   struct sph_shape shape = sph_derived_target(in);
   double extent = in->kind == SPH_COLLISION ? 2 * shape.radius : longest(&shape);
   return extent / sph_derived_wave_speed(&in->target);
+}
+
+/* Period of the first mode of a free bar of length L and thickness h: 2 pi sqrt(12)/4.730^2 L^2/(h c) (Rayleigh, Theory
+ * of Sound, chapter VIII). */
+double sph_derived_quiet_time(const struct sph_inputs *in) {
+  const struct sph_shape shape = sph_derived_target(in);
+  const double waves = 2 * sph_derived_crossing(in), slenderness = longest(&shape) / sph_shape_thinnest(&shape);
+  const bool bends = in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED;
+  return bends ? fmax(waves, 0.97 / 2 * slenderness * sph_derived_crossing(in)) : waves;
 }

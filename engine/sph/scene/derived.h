@@ -46,6 +46,9 @@ double sph_derived_arrival(const struct sph_inputs *inputs);
 double sph_derived_approach(const struct sph_inputs *inputs);
 #define SPH_DERIVED_SLOW 0.03
 double sph_derived_crossing(const struct sph_inputs *inputs); /* s, of a wave through the target's longest extent */
+/* s: no growth of damage for so long ends a run. Waves have crossed the target twice; one that is hit and slender has
+ * also bent there and back once, half a period. */
+double sph_derived_quiet_time(const struct sph_inputs *inputs);
 double sph_derived_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
 /* Largest Courant number, at most SPH_INPUTS_CFL, at which waves as short as the spacing grow by a factor of e at most
  * until stop.end_time. The step lets a wave of frequency w grow by (w dt)^4/4 in a step [its matrix of growth], with w

@@ -18,13 +18,18 @@ enum { BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
 enum { COST_DOUBLE = 260, COST_FLOAT = 160 };
 static const double euler = 0.57721566490153286;
 
+/* Share of the target's volume that has flaws: a stretched rod has none in its ends. */
+static double flawed_share(const struct sph_inputs *in) {
+  return in->kind == SPH_STRETCH ? 1 - 2 * in->stretch.flaw_free / in->target.length : 1;
+}
+
 /* Flaws of the target: drawn until each particle, or cell of fracture.cell, has one on average. */
 static double flaws_expected(const struct sph_inputs *in) {
   const struct sph_shape target = sph_derived_target(in);
   double owners = (double)in->fidelity.particles;
   if (in->crack_cell.width > 0)
     owners = fmin(owners, sph_shape_volume(&target) / pow(in->crack_cell.width, 3));
-  return owners * (log(fmax(owners, 1)) + euler);
+  return flawed_share(in) * owners * (log(fmax(owners, 1)) + euler);
 }
 
 enum { BODIES = 2 };
@@ -218,7 +223,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
   if (sph_derived_cracks(target)) {
     double E = sph_material_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
     double log_kv = log(target->material.weibull.k) +
-                    log(sph_derived_target_mass(in) / target->material.density); /* solid volume */
+                    log(flawed_share(in) * sph_derived_target_mass(in) / target->material.density); /* solid volume */
     fprintf(out,
             "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow "
             "at %.0f m/s\n",

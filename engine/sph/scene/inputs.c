@@ -236,15 +236,17 @@ static const struct field rows[] = {
                 "leaves. Ejecta must be faster than crater.ejection_speed, too; the crater does not depend on the "
                 "escape speed."),
     REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
-         .doc = "End time of the run, also if fracture continues; unless given, ten times the time of a longitudinal "
-                "wave through the target, plus the time until the bodies touch (one spacing later with method.contact: "
-                "overlap). Of a plate: when its first front, by "
-                "the jump conditions, has gone 0.94 of its width."),
+         .doc = "End time of the run, also if fracture continues; unless given, five times the default of "
+                "stop.quiet_time, plus the time until the bodies touch (one spacing later with method.contact: "
+                "overlap). Of a plate: when its first front, by the jump conditions, has gone 0.94 of its width."),
     REAL(stop.quiet_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .when = "target.fracture=auto|on",
-         .doc = "Fracture has ceased, and the run is complete, when the mean damage of the body has grown by less than "
-                "stop.quiet_growth for this long, counted from the first damage; unless given, the time of two such "
-                "waves."),
+         .doc =
+             "Fracture has ceased, and the run is complete, when the mean damage of all bodies together, and of each "
+             "body, has grown by less than stop.quiet_growth for this long, counted from the first damage. Unless "
+             "given, the time in which a longitudinal wave crosses the target twice. Of a target that is hit and "
+             "bends slowly (length L over thickness h above 4.1), half a period of the first mode of a free bar, "
+             "0.97 L^2/(h c)."),
     REAL(stop.quiet_growth, "1", 1e-3, 0, 1, .flags = FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
          .doc = "Fracture counts as over when the mean damage grows by less than this during stop.quiet_time."),
 

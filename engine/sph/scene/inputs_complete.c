@@ -90,7 +90,7 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   const bool specimens = in->kind == SPH_IMPACT || in->kind == SPH_STRETCH;
   COMPLETE(target.turned, specimens);
   COMPLETE(projectile.turned, specimens);
-  const double spacing = sph_derived_spacing(in), crossing = sph_derived_crossing(in);
+  const double spacing = sph_derived_spacing(in), quiet = sph_derived_quiet_time(in);
   COMPLETE(sides.depth, 0.1 * sph_derived_shortest_side(&in->target));
   const bool by_radius = sph_derived_has_projectile(in) && in->fidelity.spacings_per_radius > 0;
   COMPLETE(fidelity.fine_spacing,
@@ -112,7 +112,7 @@ void sph_inputs_complete(void *inputs, const bool *given) {
   COMPLETE(fragments.static_strength, static_strength(in));
   COMPLETE(fragments.layer_width, in->crack_cell.width);
   COMPLETE(fragments.dust_mass, 1e-3 * sph_derived_target_mass(in));
-  COMPLETE(stop.quiet_time, 2 * crossing);
-  COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 10 * crossing + sph_derived_arrival(in) + late(in));
+  COMPLETE(stop.quiet_time, quiet);
+  COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 5 * quiet + sph_derived_arrival(in) + late(in));
   COMPLETE(fidelity.cfl, sph_derived_cfl(in));
 }

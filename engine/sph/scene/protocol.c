@@ -33,14 +33,12 @@ static struct sph_body body_of(const struct sph_run *run, const struct sph_body_
 /* Two slabs that repeat along their axes. */
 static void place_slabs(struct sph_run *run) {
   const struct sph_inputs *in = &run->inputs;
-  double length = sph_derived_thickness(in, Z, in->target.length);
   for (int b = 0; b < 2; b++) {
     run->shape[b] = sph_derived_target(in);
-    run->shape[b].length = length;
     run->shape[b].centre[0] = (b ? 1 : -1) * (in->target.radius + in->collision.gap / 2);
-    run->shape[b].centre[Z] = length / 2;
+    run->shape[b].centre[Z] = run->shape[b].length / 2;
   }
-  run->periodic[Z] = length;
+  run->periodic[Z] = run->shape[0].length;
 }
 
 /* The plate begins at x = 0, the piston is in front of it; the periodic box begins at 0. */
@@ -315,7 +313,7 @@ void sph_protocol_record(struct sph_run *run) {
     return;
 
   const struct sph_particles *p = sph_run_read(run);
-  struct sph_sample sample = {.time = time, .damage = sph_system_damage(run->system)};
+  struct sph_sample sample = {.time = time, .damage = sph_system_damage(run->system, 0, (size_t)run->body_count)};
   if (run->inputs.kind == SPH_STRETCH) {
     sample.strain = run->inputs.stretch.rate * time;
     sample.stress = axial_stress(run, p);

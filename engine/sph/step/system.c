@@ -462,9 +462,9 @@ bool sph_system_flaws(const struct sph_system *s, uint32_t *count) {
   return any;
 }
 
-double sph_system_damage(const struct sph_system *s) {
+double sph_system_damage(const struct sph_system *s, size_t first, size_t last) {
   double volume = 0, damage = 0;
-  for (size_t b = 0; b < s->body_count; b++) {
+  for (size_t b = first; b < last; b++) {
     const struct sph_solid *body = &s->solid[b];
     if (!flaws_of(body))
       continue;

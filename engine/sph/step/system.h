@@ -65,8 +65,8 @@ enum sph_fault { /* why a step failed */
 /* One time step, not beyond `until` (s). False after a fault; later calls return false, too. */
 bool sph_system_step(struct sph_system *system, double until);
 struct sph_ledger sph_system_ledger(const struct sph_system *system);
-/* Mass-weighted mean damage of bodies with flaws. */
-double sph_system_damage(const struct sph_system *system);
+/* Mass-weighted mean damage of those of the bodies first .. last - 1 that have flaws; 0 if none has. */
+double sph_system_damage(const struct sph_system *system, size_t first, size_t last);
 /* Fills the arrays that *out has, in the order of the ids, all at one time. Positions are wrapped into the box in
  * periodic directions. The pressure is that of the last evaluation (the predicted state of the same time). */
 void sph_system_read(const struct sph_system *system, struct sph_particles *out);
