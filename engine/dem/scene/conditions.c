@@ -81,11 +81,23 @@ BEFORE(undamped, in->contact.law != DEM_CONTACT_OFF && in->contact.damping_bonde
                      !(in->contact.normal_damping > 0) &&
                      !(in->contact.tangential_damping > 0 && in->contact.friction > 0))
 
-/* A modulus of overlaps that is not the default, and no force of overlaps. */
+/* Is an input not the default of its row? */
+static bool is_given(const char *path, double value) {
+  const double usual = field_find(&dem_inputs, path, NULL)->number;
+  return value < usual || value > usual;
+}
+
+/* A modulus of overlaps, and no force of overlaps. */
 static double unpressed(const void *inputs) {
   const struct dem_inputs *in = inputs;
-  const double usual = field_find(&dem_inputs, "grain.young_modulus", NULL)->number;
-  return in->contact.law == DEM_CONTACT_OFF && (in->grain.young_modulus < usual || in->grain.young_modulus > usual);
+  return in->contact.law == DEM_CONTACT_OFF && is_given("grain.young_modulus", in->grain.young_modulus);
+}
+
+/* A rule of the end of breaking, and nothing breaks. */
+static double unbreakable(const void *inputs) {
+  const struct dem_inputs *in = inputs;
+  return !dem_inputs_loaded(in) && !in->threshold.breaking &&
+         (is_given("stop.quiet_time", in->stop.quiet_time) || is_given("stop.least_time", in->stop.least_time));
 }
 
 /* One of friction and tangential damping without the other. */
@@ -242,6 +254,10 @@ const struct condition dem_conditions[] = {
               .doubt = "it has no effect: overlapping grains do not repel each other", .reason = "K99 eqs. 1 and 2",
               .remedy = "leave it out, or set another contact.law", .inputs = "grain.young_modulus", .results = "",
               .before = unpressed),
+    CONDITION("effect", .fact = "stop.quiet_time or stop.least_time is given with threshold.breaking: false",
+              .doubt = "it has no effect: the run goes on to stop.end_time",
+              .reason = "they count from the first break", .remedy = "leave it out",
+              .inputs = "stop.quiet_time stop.least_time", .results = "", .before = unbreakable),
     CONDITION("effect", .fact = "contact.damping_bonded is on, and there is no damping",
               .doubt = "it has no effect: there is no damping", .reason = "K99 eqs. 3 and 4",
               .remedy = "give contact.normal_damping, or contact.tangential_damping and contact.friction",

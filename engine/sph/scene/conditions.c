@@ -535,7 +535,13 @@ BEFORE(no_fracture,
             is_given("fracture.draw", in->weibull.draw) || is_given("fidelity.flaws", in->weibull.flaws) ||
             is_given("stop.quiet_growth", in->stop.quiet_growth) ||
             is_given("fidelity.damage_step", in->fracture.damage_step) ||
+            fabs(in->stop.quiet_time / sph_derived_quiet_time(in) - 1) > 1e-9 || in->fragments.static_strength > 0 ||
             (!is_porous(&in->target) && (in->crack_surfaces.on || is_given("fragments.damage", in->fragments.damage)))))
+
+/* A limit of tension of a body with flaws. */
+BEFORE(no_limit, (sph_derived_cracks(&in->target) && isfinite(in->target.material.tension_limit.pressure)) ||
+                     (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile) &&
+                      isfinite(in->projectile.material.tension_limit.pressure)))
 
 BEFORE(no_lattice, in->kind == SPH_IMPACT && in->fidelity.graded && in->target.lattice == SPH_LATTICE_CUBIC)
 
@@ -950,9 +956,14 @@ const struct condition sph_conditions[] = {
               .doubt = "it has no effect: nothing cracks", .reason = "they act on flaws, and on the damage of cracks",
               .remedy = "give the material weibull.m and weibull.k, or leave it out",
               .inputs = "fracture.cell fracture.front fracture.growth fracture.cap fracture.crack_radius "
-                        "fracture.draw fidelity.flaws fidelity.damage_step stop.quiet_growth method.crack_surfaces "
-                        "fragments.damage",
+                        "fracture.draw fidelity.flaws fidelity.damage_step stop.quiet_growth stop.quiet_time "
+                        "method.crack_surfaces fragments.damage fragments.static_strength",
               .results = "", .before = no_fracture),
+    CONDITION("effect", .fact = "material.tension_limit of a body with flaws is given",
+              .doubt = "it has no effect: cracks limit the tension", .reason = "engine/sph/modules/tension_limit.h",
+              .remedy = "leave it out, or set fracture: off",
+              .inputs = "target.material.tension_limit projectile.material.tension_limit", .results = "",
+              .before = no_limit),
     CONDITION("effect", .fact = "target.lattice is cubic with fidelity.graded",
               .doubt = "it has no effect: a graded body has irregular points", .reason = "engine/sph/README.md",
               .remedy = "leave it out", .inputs = "target.lattice", .results = "", .before = no_lattice),
