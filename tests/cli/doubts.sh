@@ -118,7 +118,7 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     marked "18 of 20" "${search[@]}"
     columns 0 "${search[@]}"
     caption o "${search[@]}" --picture o.png ;;
-  fit) marked "62 of 71" fit measured.yaml unknown.yaml --rounds 3 --quiet
+  fit) marked "60 of 71" fit measured.yaml unknown.yaml --rounds 3 --quiet
     columns 0 fit measured.yaml unknown.yaml --rounds 3 --quiet
     caption q fit measured.yaml unknown.yaml --rounds 3 --quiet --picture q.png ;;
   status) expect 0 "$clast" status marked.db --json
