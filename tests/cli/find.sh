@@ -113,7 +113,7 @@ tr '\n' ' ' <out | grep -qF "A search may have at most 5000 runs; the width aske
 expect 0 "$clast" find disc.yaml --level '0.5 kg/m' -Q mean_fragment_mass --max-runs 20
 prints "kg/m"
 # An interval that the bracket cuts is told.
-expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --from 2.5% --to 6% --max-runs 20
+expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --from 2.5% --to 6% --max-runs 28
 tr '\n' ' ' <out | grep -qF "The interval ends where the bracket does, and the crossing may be beyond it: a lower --from tells." || fail "the cut interval: $(cat out)"
 # The last round takes what is left, to less than a run a place.
 expect 0 "$clast" find disc.yaml --level 0.5 --within 0.0001 --max-runs 47 --store used.db --quiet
