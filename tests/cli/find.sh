@@ -174,7 +174,7 @@ ok "the interval between two whole numbers"
 sed 's/stop.end_time: 4 ms/stop.end_time: 0.3 ms, fidelity.time_step: 4 us/; s/disc.db/coarse.db/' disc.yaml >coarse.yaml
 expect 0 "$clast" find coarse.yaml --level 0.5 --max-runs 40
 head -1 out | grep -q ' !' || fail "no mark"
-says "marked (!), 34 of 39 runs: step: fidelity.time_step over"
+says "marked (!), 35 of 40 runs: step: fidelity.time_step over"
 # No answer without runs: the step is far too long.
 sed 's/stop.end_time: 4 ms/&, fidelity.time_step: 1 ms/; s/disc.db/failed.db/' disc.yaml >failed.yaml
 expect 1 "$clast" find failed.yaml --level 0.5 --max-runs 20
