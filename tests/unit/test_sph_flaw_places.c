@@ -304,9 +304,6 @@ TEST(extremes_of_the_law) {
       assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
       assert_null(flaws);
     }
-  range.n = 0;
-  const struct sph_flaw_law law = {.weibull = {9, 1e30}};
-  assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
   sph_particles_free(p);
   const struct sph_body one = sphere(1);
   p = make(&one, 0, &range);
