@@ -116,9 +116,10 @@ enum condition_mark condition_next(const struct condition *list, const char **wo
   if (!condition_find(list, word))
     return rests_on(names, NULL) ? CONDITION_MARKED : CONDITION_SOUND;
   for (const struct condition *c = list; c->word; c++) {
-    if (strcmp(c->word, word) != 0 || !rests_on(names, c->results) || mark == CONDITION_WITHHELD)
+    const enum condition_mark here = c->withheld ? CONDITION_WITHHELD : CONDITION_MARKED;
+    if (strcmp(c->word, word) != 0 || !rests_on(names, c->results) || here <= mark)
       continue;
-    mark = c->withheld ? CONDITION_WITHHELD : CONDITION_MARKED;
+    mark = here;
     *row = c;
   }
   return mark;
@@ -156,7 +157,16 @@ char *condition_says(const struct condition *c, char text[CONDITION_SAYS]) {
 
 void condition_sentence(const struct condition *c, FILE *out) {
   char says[CONDITION_SAYS];
-  fprintf(out, "%s (clast explain %s)\n", condition_says(c, says), c->word);
+  size_t rows = 1;
+  while (c[rows].word && strcmp(c[rows].word, c->word) == 0)
+    rows++;
+  if (rows > 2)
+    fprintf(out, "one of %zu reasons", rows);
+  else
+    fputs(condition_says(c, says), out);
+  if (rows == 2)
+    fprintf(out, ", or %s", condition_says(&c[1], says));
+  fprintf(out, " (clast explain %s)\n", c->word);
 }
 
 void condition_tell(const struct condition *list, const char *words, condition_set told, const char *before,

@@ -109,7 +109,8 @@ bool condition_has(const char *words, const char *word);
 enum { CONDITION_SAYS = 256 };
 char *condition_says(const struct condition *condition, char text[CONDITION_SAYS]);
 
-/* Prints that and " (clast explain WORD)". */
+/* Prints that, "or" that of the word's other row, and " (clast explain WORD)": a run has the word alone, not which of
+ * the two is broken. */
 void condition_sentence(const struct condition *condition, FILE *out);
 
 /* The first row of a word in a list; NULL when there is none. */

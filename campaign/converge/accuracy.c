@@ -424,6 +424,7 @@ static void choose(struct accuracy *accuracy) {
 
 double accuracy_least(const struct accuracy *accuracy, double point_s, bool *open) {
   double least = NAN;
+  *open = false;
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
     const double total = total_of(option, seeds_in(option, point_s));

@@ -36,7 +36,8 @@ static struct field_value round_within(const struct find *find, double x, double
   if (value.kind == FIELD_REAL && width > 0) {
     const char *unit;
     const double scale = find_unit(find, &unit);
-    const double step = pow(10, floor(log10(width / scale)) - 1) * scale;
+    const double digits = find->logarithmic ? fmin(width, fabs(value.number)) : width;
+    const double step = pow(10, floor(log10(digits / scale)) - 1) * scale;
     const double places = value.number / step;
     value.number = step * (x == low ? floor(places + 1e-6) : x == high ? ceil(places - 1e-6) : round(places));
   }

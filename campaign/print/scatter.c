@@ -568,8 +568,9 @@ static void write_answer(const struct from_points *p) {
   const struct sensitivity_share *share = share_of(p, first);
   char text[2048] = "";
   if (p->index[0].verdict == SENSITIVITY_STEPS) {
-    puts("These points do not tell it: pairs of them differ in one input alone, as in a design of Saltelli or Morris. "
-         "Give\nits campaign, too: clast sensitivity STORE CAMPAIGN.yaml");
+    puts("These points do not tell it: pairs of them differ in one input alone, as in a design of Saltelli. Give\n"
+         "its campaign, too: clast sensitivity STORE CAMPAIGN.yaml. Another design needs points that differ in all "
+         "inputs");
     return;
   }
   if (p->data.points < p->needed) {

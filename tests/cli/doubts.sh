@@ -350,4 +350,11 @@ assert 1 < value("runs needed") / (40 / n) / (1.96 * sd / 0.03) ** 2 < 1.1, (row
 assert value("runs needed, seeds.until") % 10 == 0 and value("runs needed, seeds.until") > value("runs needed"), rows
 PY
 ok "values that runs lack"
-done_after 133
+
+# A store has the word alone, not which of its two conditions the run breaks: both are told.
+printf '%s\n' 'name: quiet' 'scene: disruption@draft' 'set: {fidelity.particles: 300, stop.quiet_time: 2 us}' \
+  'seeds: {per_point: 1}' >quiet.yaml
+expect 0 "$clast" run quiet.yaml --quiet
+expect 0 "$clast" stats quiet.db
+says "crosses the target is below 1, or stop.quiet_growth is above 0.01 (clast explain quiet)"
+done_after 135

@@ -85,7 +85,7 @@ expect 65 "$clast" explain ./s.yaml
 says "wrong.yaml:2:7: error: like: only built-in materials can be named here, no files"; one_error
 sed 's/^material:/name:/' rocks/thin.yaml >wrong.yaml
 expect 65 "$clast" explain ./s.yaml
-says "wrong.yaml:1:1: error: name: unknown key; known here are density,"; says "weibull, material, source, sources, like"; one_error
+says "wrong.yaml:1:1: error: name: unknown key; known here are density,"; says "weibull, sources, material, source, like"; one_error
 scene rocks/own.yaml >s.yaml
 density() { "$clast" explain "$@" --json | python -c "
 import json, sys; print(*[r['value'] for r in json.load(sys.stdin) if r['path'] in ('target.material.name', 'target.material.density')])"; }

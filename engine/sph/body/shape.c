@@ -404,7 +404,7 @@ static struct sph_shape hull(const struct sph_shape *s) {
 }
 
 /* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points, or at a point
- * of both. */
+ * of both, whose depth in one of them is a least overlap. */
 static double convex_gap(const struct sph_shape *a, const struct sph_shape *b) {
   double p[3], normal[3], gap = INFINITY;
   memcpy(p, b->centre, sizeof p);
@@ -417,7 +417,7 @@ static double convex_gap(const struct sph_shape *a, const struct sph_shape *b) {
         p[k] -= gap * normal[k];
     }
     if (gap <= 1e-9 * size)
-      return -DBL_MIN;
+      return fmin(gap, -DBL_MIN);
     if (before - gap < 1e-12 * size && round)
       break;
   }

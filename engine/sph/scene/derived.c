@@ -291,6 +291,6 @@ double sph_derived_crossing(const struct sph_inputs *in) {
 double sph_derived_quiet_time(const struct sph_inputs *in) {
   const struct sph_shape shape = sph_derived_target(in);
   const double waves = 2 * sph_derived_crossing(in), slenderness = longest(&shape) / sph_shape_thinnest(&shape);
-  const bool bends = in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED;
+  const bool bends = in->kind == SPH_IMPACT && in->sides.far != SPH_FAR_DAMPED && sph_derived_scene_cracks(in);
   return bends ? fmax(waves, 0.97 / 2 * slenderness * sph_derived_crossing(in)) : waves;
 }

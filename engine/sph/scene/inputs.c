@@ -245,8 +245,9 @@ static const struct field rows[] = {
              "Fracture has ceased, and the run is complete, when the mean damage of all bodies together, and of each "
              "body, has grown by less than stop.quiet_growth for this long, counted from the first damage. Unless "
              "given, the time in which a longitudinal wave crosses the target twice. Of a target that is hit and "
-             "bends slowly (length L over thickness h above 4.1), half a period of the first mode of a free bar, "
-             "0.97 L^2/(h c)."),
+             "bends slowly (length L over thickness h above 4.1), half of the period of a free bar's first mode, which "
+             "is "
+             "about 0.97 L^2/(h c)."),
     REAL(stop.quiet_growth, "1", 1e-3, 0, 1, .flags = FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
          .doc = "Fracture counts as over when the mean damage grows by less than this during stop.quiet_time."),
 
