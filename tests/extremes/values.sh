@@ -44,10 +44,10 @@ def commands(store, out, queries):
     yield from (["stats", store], ["stats", store, "-b", "strain", "-Q", "main", "--csv"])
     yield from (["estimates", store, *form] for form in ([], ["--csv"], ["--json"]))
     yield ["exponents", store, "--draws", "20"]
-    yield from (["scatter", store, *form] for form in ([], ["--split"], ["--half-width", "0.01", "--json"]))
+    yield from (["scatter", store, *form] for form in ([], ["--split"], ["--csv"], ["--half-width", "0.01", "--json"]))
     yield from (["scatter", store, "-Q", name] for name in ("largest_speed", "fragment_count"))
     yield from (["status", store, *form] for form in ([], ["--json"]))
-    yield from (["spectrum", store, *form] for form in ([], ["-c"], ["--runs", "--csv"], ["--size", "2700 kg/m^3"]))
+    yield from (["spectrum", store, *form] for form in ([], ["-c"], ["-c", "--json"], ["--runs", "--csv"], ["--size", "2700 kg/m^3"]))
     yield from (["compare", f"{store}:1", f"{store}:2"], ["compare", store, "good.db", "--csv"])
     for name, parameters in queries:
         values = [word for one in parameters.replace(",", " ").split() for word in ("-w", f"{one}={runs[0] if one == 'run' else 1}")]
