@@ -29,7 +29,8 @@ static const struct field rows[] = {
     REAL(time_step, "s", 0, .doc = "The smallest time step used."),
     REAL(total_mass, "kg", 0, .doc = "Mass of the body at the end (two dimensions: per metre of thickness)."),
     REAL(energy_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
-         .doc = "Energy gained or lost by numerical errors, as a share of the energy put in."),
+         .doc = "Energy gained or lost by numerical errors, as a share of the energy put in; in sph without the energy "
+                "of the motion of all matter together, which no collision can use."),
     REAL(momentum_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
          .doc = "Change of total momentum minus the impulse of external forces, as a share of the sum of the momenta "
                 "of all grains or particles."),

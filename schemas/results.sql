@@ -96,7 +96,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   time REAL, -- [s] Simulated time at the end.
   time_step REAL, -- [s] The smallest time step used.
   total_mass REAL, -- [kg] Mass of the body at the end (two dimensions: per metre of thickness).
-  energy_error REAL, -- [1] Energy gained or lost by numerical errors, as a share of the energy put in.
+  energy_error REAL, -- [1] Energy gained or lost by numerical errors, as a share of the energy put in; in sph without the energy of the motion of all matter together, which no collision can use.
   momentum_error REAL, -- [1] Change of total momentum minus the impulse of external forces, as a share of the sum of the momenta of all grains or particles.
   fragment_count INTEGER, -- [1] Fragments of any size, single grains (dust) included.
   single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
@@ -370,7 +370,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   energy_work_of_held REAL, -- [J] Work done on the body by matter that is held at a given velocity: the grips of a stretch, the piston; 0 in all other scenes.
   energy_clamped REAL, -- [J] Energy added where internal energy would have become negative.
   energy_input REAL, -- [J] Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held.
-  clamped_share REAL, -- [1] energy.clamped over energy_input. energy_error does not subtract it.
+  clamped_share REAL, -- [1] energy.clamped over the energy put in, without that of the motion of all matter together. energy_error does not subtract it.
   density_held_share REAL, -- [1] Share of all particle steps that held the density at its lower limit. Such a step adds no energy.
   angular_momentum_error REAL, -- [1] Relative change of angular momentum; off with grips, a piston or a damping layer. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target's extent. Only axes count across which nothing is periodic.
   limited_courant REAL, -- [1] Share of the steps limited by the speed of sound and viscosity, or by a damped side.
@@ -1299,7 +1299,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Rel
 
 INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamped over energy_input. energy_error does not subtract it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamped over the energy put in, without that of the motion of all matter together. energy_error does not subtract it.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_depth', 'm', 'Impact: depth at the start of the deepest compacted particle near the axis; off without pores.', 1);
 
@@ -1453,7 +1453,7 @@ INSERT INTO column_doc VALUES ('run', 'digest', NULL, 'changes when any bit chan
 
 INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
-INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in.', 1);
+INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in; in sph without the energy of the motion of all matter together, which no collision can use.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'excluded', NULL, 'why a person excluded the run (clast exclude); NULL: it is not excluded', 0);
 
@@ -1533,7 +1533,7 @@ INSERT INTO column_doc VALUES ('runs', 'broken_stretch', '1', 'Broken beams for 
 
 INSERT INTO column_doc VALUES ('runs', 'cease_time', 's', 'Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped over energy_input. energy_error does not subtract it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped over the energy put in, without that of the motion of all matter together. energy_error does not subtract it.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_depth', 'm', 'Impact: depth at the start of the deepest compacted particle near the axis; off without pores.', 0);
 
@@ -1583,7 +1583,7 @@ INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that the da
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Energy gained or lost by numerical errors, as a share of the energy put in; in sph without the energy of the motion of all matter together, which no collision can use.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_external_work', 'J/m', 'Work done by moving boundaries.', 0);
 

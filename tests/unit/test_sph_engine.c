@@ -322,6 +322,20 @@ TEST(stop_rules) {
   free(ran.fragments);
 }
 
+/* Errors of energy count relative to mu v^2/2, whichever body moves: that of a boulder in flight would hide them. */
+TEST(energy_of_the_common_motion_does_not_count) {
+  const struct sph_inputs in = SPH_CASE("basalt-sphere", "target.radius=1 cm", "projectile.material.name=basalt",
+                                        "impact.projectile=size", "projectile.radius=5 cm", "impact.speed=60 m/s",
+                                        "fidelity.particles=300", "fidelity.projectile_spacing=4");
+  struct sph_run *run = NULL;
+  OK(sph_run_create(&in, 1, &run, &error));
+  const struct sph_ledger ledger = sph_system_ledger(run->system);
+  const double m = run->range[0].mass, other = run->range[1].mass, speed = in.impact.speed;
+  assert_true(other > 100 * m);
+  assert_true(fabs(sph_run_energy_available(run, &ledger) / (m * other / (m + other) * speed * speed / 2) - 1) < 1e-9);
+  sph_run_free(run);
+}
+
 /* A slender bar that is hit and can bend gets half a period of the first mode of a free bar, with the root 4.73004 of
  * cos(x) cosh(x) = 1; up to L/h = 4 waves through the bar are slower. */
 TEST(bars_have_time_to_bend) {

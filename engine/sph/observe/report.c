@@ -226,10 +226,6 @@ static status report_protocol(const struct sph_run *run, struct sph_results *res
   }
 }
 
-static bool closed(const struct sph_run *run) {
-  return !run->start->held && !run->start->damping;
-}
-
 /* The scale of momentum errors: the larger sum of momenta, at the start or now. Bodies that stop each other do not make
  * a small error look large. */
 static double momentum_scale(const struct sph_run *run, const struct sph_ledger *ledger) {
@@ -245,7 +241,7 @@ static void report_ledger(const struct sph_run *run, const struct sph_ledger *le
   results->energy.work_of_held = sph_results_finite(ledger->work_of_held);
   results->energy.clamped = sph_results_finite(ledger->clamped);
   results->energy_input = sph_results_finite(input);
-  results->clamped_share = sph_results_share(fabs(ledger->clamped), input);
+  results->clamped_share = sph_results_share(fabs(ledger->clamped), sph_run_energy_available(run, ledger));
 
   double change[3];
   for (int k = 0; k < 3; k++) { /* it is conserved about axis k where both other directions are open */
@@ -253,7 +249,7 @@ static void report_ledger(const struct sph_run *run, const struct sph_ledger *le
     change[k] = conserved ? ledger->angular_momentum[k] - run->state.angular_start[k] : 0;
   }
   double scale = fmax(norm(run->state.angular_start), momentum_scale(run, ledger) * sph_run_extent(run));
-  if (closed(run))
+  if (sph_run_keeps_momentum(run))
     results->angular_momentum_error = sph_results_share(norm(change), scale);
 }
 
@@ -336,9 +332,11 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
     double v = norm(found->fragments[k].velocity);
     translation += 0.5 * found->fragments[k].mass * v * v;
   }
-  outcome->energy_error = sph_results_share(fabs(sph_run_closed(ledger) - run->state.frame.closed_start), input);
+  outcome->energy_error = sph_results_share(fabs(sph_run_closed(ledger) - run->state.frame.closed_start),
+                                            sph_run_energy_available(run, ledger));
   outcome->kinetic_energy_share = sph_results_share(translation, input);
-  outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
+  outcome->momentum_error = sph_run_keeps_momentum(run) ? sph_results_share(norm(change), momentum_scale(run, ledger))
+                                                        : (double)NAN;
 }
 
 status sph_report_finish(void *of, struct outcome *outcome, void *results, struct fragment **fragments, size_t *count,

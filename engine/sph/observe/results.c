@@ -100,7 +100,10 @@ static const struct field rows[] = {
     REAL(energy.clamped, "J", -HUGE_VAL, .doc = "Energy added where internal energy would have become negative."),
     REAL(energy_input, "J", 0,
          .doc = "Energy put in: kinetic energy at the start plus the absolute value of energy.work_of_held."),
-    REAL(clamped_share, "1", 0, .doc = "energy.clamped over energy_input. energy_error does not subtract it."),
+    REAL(clamped_share, "1", 0,
+         .doc =
+             "energy.clamped over the energy put in, without that of the motion of all matter together. energy_error "
+             "does not subtract it."),
     SHARE(density_held_share,
           .doc = "Share of all particle steps that held the density at its lower limit. Such a step adds no energy."),
     REAL(angular_momentum_error, "1", 0,

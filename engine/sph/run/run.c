@@ -14,6 +14,20 @@ double sph_run_closed(const struct sph_ledger *l) {
   return l->kinetic + l->internal + l->contact + l->damped - l->work_of_held;
 }
 
+double sph_run_energy_available(const struct sph_run *run, const struct sph_ledger *ledger) {
+  const double input = run->state.frame.energy_input + fabs(ledger->work_of_held), *p = run->state.momentum_start;
+  if (!sph_run_keeps_momentum(run))
+    return input;
+  double mass = 0;
+  for (size_t i = 0; i < run->start->n; i++)
+    mass += run->start->mass[i];
+  return fmax(input - (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) / (2 * mass), 0);
+}
+
+bool sph_run_keeps_momentum(const struct sph_run *run) {
+  return !run->start->held && !run->start->damping;
+}
+
 double sph_run_extent(const struct sph_run *run) {
   const double diagonal[3] = {0.57735026918962576, 0.57735026918962576, 0.57735026918962576};
   return sph_shape_reach(&run->shape[0], diagonal);
@@ -101,7 +115,7 @@ static struct frame_energy energy_of(void *of) {
   const struct sph_run *run = of;
   const struct sph_ledger ledger = sph_system_ledger(run->system);
   return (struct frame_energy){.closed = sph_run_closed(&ledger),
-                               .input = run->state.frame.energy_input + fabs(ledger.work_of_held),
+                               .input = sph_run_energy_available(run, &ledger),
                                .bound = run->inputs.fidelity.energy_bound};
 }
 

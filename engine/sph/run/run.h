@@ -74,6 +74,10 @@ void sph_run_free(void *run); /* NULL is fine */
 const struct sph_particles *sph_run_read(struct sph_run *run);
 double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; `clamped` is not in it */
 double sph_run_extent(const struct sph_run *run);       /* m, the target's reach: a length for errors */
+/* Energy put in, without that of the motion of the common centre of mass, J: no collision can use it. Errors of energy
+ * count relative to this, so that they do not depend on which body moves. Where momentum is not kept: all of it. */
+double sph_run_energy_available(const struct sph_run *run, const struct sph_ledger *ledger);
+bool sph_run_keeps_momentum(const struct sph_run *run); /* no matter is held, and no layer damps */
 
 /* protocol.c: bodies with their flaws, places and motion. Fills shape, range, start, flaws... of the
  * run. */

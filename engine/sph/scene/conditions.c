@@ -17,6 +17,11 @@ static bool is_porous(const struct sph_body_inputs *body) {
   return body->material.palpha.curve != SPH_CRUSH_NONE && body->material.palpha.distention > 1;
 }
 
+static double available(const struct sph_run *run) {
+  const struct sph_ledger ledger = sph_system_ledger(run->system);
+  return sph_run_energy_available(run, &ledger);
+}
+
 /* ---- the integration ---- */
 
 AFTER(drift, r->outcome->energy_error)
@@ -333,7 +338,7 @@ static double unfinished(const struct condition_run *r) {
 }
 
 /* Energy of the overlap of bodies over the energy put in: they have not parted yet. */
-AFTER(pressing, results->contact.energy / results->energy_input)
+AFTER(pressing, results->contact.energy / available(r->run))
 
 /* Pieces of bodies of which none cracks, over the number of bodies. */
 static double pieces(const struct condition_run *r) {
@@ -347,7 +352,7 @@ static double pieces(const struct condition_run *r) {
 
 /* The elastic strain that would hold all the energy put in, of a target that cannot crack. */
 AFTER(borne, ONLY(in->kind == SPH_IMPACT && !sph_derived_cracks(&in->target),
-                  sqrt(2 * results->energy_input / results->target_mass) / sph_derived_wave_speed(&in->target)))
+                  sqrt(2 * available(r->run) / results->target_mass) / sph_derived_wave_speed(&in->target)))
 
 /* The strain at which the weakest flaw of the target opens. */
 static double weakest(const void *inputs) {
