@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/dem/step/system_layout.h"
+#include "engine/grow.h"
 #include "schemas/memory.h"
 
 struct array {
@@ -88,26 +89,15 @@ size_t dem_system_arrays_bytes(const struct dem_system *s) {
 }
 
 bool dem_system_arrays_grow_near(struct dem_system *s, size_t pairs) {
+  const size_t before = s->near_capacity / DEM_BLOCK, blocks = (pairs + DEM_BLOCK - 1) / DEM_BLOCK;
+  const size_t capacity = blocks * DEM_BLOCK, general = s->bond_capacity * DEM_BLOCK + capacity;
+  size_t room = before;
   if (pairs <= s->near_capacity)
     return true;
-  const size_t capacity = (pairs + DEM_BLOCK - 1) / DEM_BLOCK * DEM_BLOCK;
-  struct dem_near_block *near = aligned_alloc(64, capacity / DEM_BLOCK * sizeof *near);
-  struct dem_near_pair *near_pair = malloc(capacity * sizeof *near_pair);
-  uint32_t *general = malloc((s->bond_capacity * DEM_BLOCK + capacity) * sizeof *general);
-  if (!near || !near_pair || !general) {
-    free(near);
-    free(near_pair);
-    free(general);
+  if (!grow_aligned(&s->near, &room, blocks, sizeof *s->near, before) ||
+      !grow_block(&s->near_pair, capacity * sizeof *s->near_pair) ||
+      !grow_block(&s->general, general * sizeof *s->general))
     return false;
-  }
-  memcpy(near, s->near, s->near_capacity / DEM_BLOCK * sizeof *near);
-  memcpy(near_pair, s->near_pair, s->near_capacity * sizeof *near_pair);
-  free(s->near);
-  free(s->near_pair);
-  free(s->general);
-  s->near = near;
-  s->near_pair = near_pair;
-  s->general = general;
   s->near_capacity = capacity;
   return true;
 }

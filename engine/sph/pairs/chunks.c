@@ -1,8 +1,9 @@
 /* Makes the lists of all chunks: of neighbours (neighbours.c), balanced, with slots in place of particle numbers. */
 #include <stdlib.h>
 #include <string.h>
-#include "engine/sph/pairs/lists.h"
 
+#include "engine/grow.h"
+#include "engine/sph/pairs/lists.h"
 #include "engine/sph/pairs/pairs.h"
 
 enum { BITS = 64 };
@@ -212,16 +213,9 @@ static bool find_halo(struct sph_chunk *c, size_t lists, size_t n) {
     goto cleanup;
   mark_halo(c, lists, &marks);
   c->halo = marks.total;
-  if (c->halo > c->halo_capacity) {
-    free(c->halo_particle);
-    c->halo_capacity = c->halo + c->halo / 8;
-    c->halo_particle = malloc(c->halo_capacity * sizeof *c->halo_particle);
-    enough = c->halo_particle;
-    if (!enough) {
-      c->halo_capacity = 0;
-      goto cleanup;
-    }
-  }
+  enough = grow_aligned(&c->halo_particle, &c->halo_capacity, c->halo, sizeof *c->halo_particle, 0);
+  if (!enough)
+    goto cleanup;
 
   for (size_t w = 0, at = 0; w <= marks.last / BITS; w++)
     for (uint64_t word = marks.bits[w]; word; word &= word - 1)
@@ -259,15 +253,8 @@ static bool find_stretches(struct sph_chunks *s) {
   for (size_t k = 0; k < s->count; k++)
     for (size_t m = 0; m < s->chunk[k].halo; m = end_of_stretch(&s->chunk[k], m), total++)
       s->chunk[s->chunk[k].halo_particle[m] / SPH_CHUNK].stretches++;
-  if (total > s->stretch_capacity) {
-    free(s->stretch);
-    s->stretch_capacity = total + total / 8;
-    s->stretch = malloc(s->stretch_capacity * sizeof *s->stretch);
-    if (!s->stretch) {
-      s->stretch_capacity = 0;
-      return false;
-    }
-  }
+  if (!grow_aligned(&s->stretch, &s->stretch_capacity, total, sizeof *s->stretch, 0))
+    return false;
 
   struct sph_chunk_stretch *next = s->stretch;
   for (size_t k = 0; k < s->count; k++) {
