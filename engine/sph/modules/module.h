@@ -167,7 +167,3 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
 bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs);
 /* complete_material of all modules. */
 void sph_modules_complete_material(struct sph_material *material, const bool *given);
-/* Bytes per particle that they link (sph_module.bytes_linked). */
-size_t sph_modules_bytes_linked(const struct sph_module_set *modules);
-/* Bytes per particle that they add to the pair loop's records. */
-size_t sph_modules_bytes_in_pairs(const struct sph_module_set *modules);

@@ -63,17 +63,3 @@ void sph_modules_complete_material(struct sph_material *material, const bool *gi
     if (list[m]->complete_material)
       list[m]->complete_material(material, given);
 }
-
-size_t sph_modules_bytes_in_pairs(const struct sph_module_set *modules) {
-  size_t bytes = 0;
-  FOR_MODULES(m, *modules)
-    bytes += (size_t)list[m]->bytes_in_pairs;
-  return bytes;
-}
-
-size_t sph_modules_bytes_linked(const struct sph_module_set *modules) {
-  size_t bytes = 0;
-  FOR_MODULES(m, *modules)
-    bytes += (size_t)list[m]->bytes_linked;
-  return bytes;
-}

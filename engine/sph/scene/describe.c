@@ -54,8 +54,11 @@ static struct need need_of(const struct sph_inputs *in) {
     need.modules[b] = sph_modules_of(&physics, in);
     const struct sph_column_set own = sph_modules_columns(&need.modules[b], &physics);
     set_unite(of_modules.word, own.word, SPH_COLUMNS);
-    need.linked += sph_modules_bytes_linked(&need.modules[b]);
-    need.pairs = sph_modules_bytes_in_pairs(&need.modules[b]); /* options of the pair loop: the same for all bodies */
+    need.pairs = 0; /* options of the pair loop: the same for all bodies */
+    FOR_MODULES(m, need.modules[b]) {
+      need.linked += (size_t)sph_modules_at(m)->bytes_linked;
+      need.pairs += (size_t)sph_modules_at(m)->bytes_in_pairs;
+    }
   }
   set_unite(need.columns.word, of_modules.word, SPH_COLUMNS);
   need.bytes = need.pairs + need.linked + set_size(of_modules.word, SPH_COLUMNS) * sizeof(double);
