@@ -206,8 +206,7 @@ UNUSED static struct solid_case solid_pulled_cube(double side, double strain) {
   c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_BOX, .side = {side, side, side}};
   c.body[0].lattice.particles = 4000;
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD);
-  const struct sph_middle between = {.axis = {0, 0, 1}, .half = side / 2 - 2 * c.range[0].h};
-  sph_bodies_hold(c.particles, c.range[0], &between, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+  sph_bodies_hold(c.particles, c.range[0], side / 2 - 2 * c.range[0].h, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
   const double stress = solid_young(m) * strain, shrunk = 1 - (1 - 2 * solid_poisson(m)) * strain;

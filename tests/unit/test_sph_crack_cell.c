@@ -14,7 +14,7 @@ static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **
                                    .draw = SPH_FLAWS_POISSON,
                                    .seed = seed,
                                    .cell_width = width};
-  OK(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], NULL, flaws, &error));
+  OK(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], INFINITY, flaws, &error));
   c.parameters.in.crack_cell.width = width;
   c.physics[0].flaws = *flaws;
   return c;

@@ -21,16 +21,16 @@ static struct sph_particles *make(const struct sph_body *body, int arrays, struc
 }
 
 static struct sph_flaws *place(const struct sph_flaw_law *law, const struct sph_body *body,
-                               const struct sph_particles *p, struct sph_range range, const struct sph_middle *middle) {
+                               const struct sph_particles *p, struct sph_range range, double half) {
   struct sph_flaws *flaws = NULL;
-  OK(sph_flaws_place(law, &body->shape, p, range, middle, &flaws, &error));
+  OK(sph_flaws_place(law, &body->shape, p, range, half, &flaws, &error));
   return flaws;
 }
 
 static struct sph_flaws *flaws_of(const struct sph_body *body, const struct sph_particles *p, struct sph_range range,
-                                  int draw, uint64_t seed, const struct sph_middle *middle) {
+                                  int draw, uint64_t seed, double half) {
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .draw = draw, .seed = seed};
-  return place(&law, body, p, range, middle);
+  return place(&law, body, p, range, half);
 }
 
 static size_t brute(size_t n, const double *x, const double *y, const double *z, const double q[3], size_t self) {
@@ -89,7 +89,7 @@ TEST(owners_are_nearest) {
   const struct sph_body body = sphere(300);
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
-  SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_RANKED, 5, NULL);
+  SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_RANKED, 5, INFINITY);
   const double log_kv = log(5e34) + log(sph_shape_volume(&body.shape));
   OWNED unsigned char *seen = calloc(flaws->count, 1);
   for (size_t i = 0; i < p->n; i++) {
@@ -119,7 +119,7 @@ TEST(a_seed_means_the_same_flaws) {
   struct sph_range a, b;
   SPH_PARTICLES *p = make(&coarse, 0, &a), *q = make(&fine, 0, &b);
   for (int draw = 0; draw < 2; draw++) {
-    SPH_FLAWS *few = flaws_of(&coarse, p, a, draw, 9, NULL), *many = flaws_of(&fine, q, b, draw, 9, NULL);
+    SPH_FLAWS *few = flaws_of(&coarse, p, a, draw, 9, INFINITY), *many = flaws_of(&fine, q, b, draw, 9, INFINITY);
     assert_true(many->count > few->count);
     OWNED size_t *owner = malloc(many->count * sizeof *owner);
     OWNED double *sorted = malloc(many->count * sizeof *sorted), *all = malloc(few->count * sizeof *all);
@@ -161,7 +161,7 @@ TEST(particles_have_ln_n_flaws) {
   SPH_PARTICLES *p = make(&body, 0, &range);
   double sum = 0;
   for (uint64_t seed = 0; seed < 12; seed++) {
-    SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_POISSON, seed, NULL);
+    SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_POISSON, seed, INFINITY);
     for (size_t i = 0; i < p->n; i++) {
       assert_true(flaws->first[i + 1] > flaws->first[i]);
       for (size_t f = flaws->first[i] + 1; f < flaws->first[i + 1]; f++)
@@ -186,7 +186,7 @@ TEST(the_weakest_scatters_by_the_law) {
                                      .solid_ratio = 2,
                                      .draw = SPH_FLAWS_POISSON,
                                      .seed = (uint64_t)seed};
-    SPH_FLAWS *flaws = place(&law, &body, p, range, NULL);
+    SPH_FLAWS *flaws = place(&law, &body, p, range, INFINITY);
     double least = HUGE_VAL;
     for (size_t f = 0; f < flaws->count; f++)
       least = fmin(least, flaws->log_strain[f]);
@@ -205,11 +205,10 @@ TEST(ends_have_none) {
                                .lattice = {.particles = 1500},
                                .density = 2700,
                                .h_over_spacing = NAN};
-  const struct sph_middle middle = {.axis = {0, 0, 1}, .half = 0.012};
   struct sph_range range;
   struct sph_particles *p = make(&rod, 0, &range);
-  struct sph_flaws *with = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, &middle);
-  struct sph_flaws *without = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, NULL);
+  struct sph_flaws *with = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, 0.012);
+  struct sph_flaws *without = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, INFINITY);
   const double log_kv = log(5e34) + log(sph_shape_volume(&rod.shape));
   size_t ends = 0, common = 0;
   for (size_t i = 0; i < p->n; i++) {
@@ -235,9 +234,8 @@ TEST(ends_have_none) {
   assert_true(ends > 400 && ends < 800 && common > 2000); /* 40 % of 1500 */
   sph_flaws_free(with);
   sph_flaws_free(without);
-  const struct sph_middle nothing = {.axis = {0, 0, 1}, .half = -1};
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .seed = 1};
-  assert_int_equal(sph_flaws_place(&law, &rod.shape, p, range, &nothing, &with, &error), STATUS_CONTENT);
+  assert_int_equal(sph_flaws_place(&law, &rod.shape, p, range, -1, &with, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "flaw-free ends"));
   assert_null(with);
   sph_particles_free(p);
@@ -263,7 +261,7 @@ TEST(graded_particles_have_their_weakest) {
     for (int draw = 0; draw < 2; draw++) {
       const struct sph_flaw_law law = {.weibull = {3, 1.39e18}, .draw = draw, .seed = seed};
       SPH_FLAWS *flaws = NULL;
-      assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
+      assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, INFINITY, &flaws, NULL), STATUS_OK);
       const double n = (double)p->n, common = ceil(n * (log(n) + 0.5772156649015329));
       assert_true((double)flaws->count >= common && (double)flaws->count < common + n);
       waited += (int)((double)flaws->count - common);
@@ -292,7 +290,7 @@ TEST(extremes_of_the_law) {
     for (int j = 0; j < 4; j++)
       for (int draw = 0; draw < 2; draw++) {
         const struct sph_flaw_law law = {.weibull = {ms[i], ks[j]}, .draw = draw, .seed = 2};
-        assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
+        assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, INFINITY, &flaws, NULL), STATUS_OK);
         for (size_t f = 0; f < flaws->count; f++)
           assert_true(isfinite(flaws->log_strain[f]));
         sph_flaws_free(flaws);
@@ -301,13 +299,13 @@ TEST(extremes_of_the_law) {
   for (int k = 0; k < 4; k++)
     for (int which = 0; which < 2; which++) {
       const struct sph_flaw_law law = {.weibull = {which ? 9 : bad[k], which ? bad[k] : 1e30}, .seed = 2};
-      assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
+      assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, INFINITY, &flaws, &error), STATUS_CONTENT);
       assert_null(flaws);
     }
   sph_particles_free(p);
   const struct sph_body one = sphere(1);
   p = make(&one, 0, &range);
-  flaws = flaws_of(&one, p, range, SPH_FLAWS_POISSON, 3, NULL);
+  flaws = flaws_of(&one, p, range, SPH_FLAWS_POISSON, 3, INFINITY);
   assert_int_equal(flaws->count, 1);
   sph_flaws_free(flaws);
   sph_particles_free(p);

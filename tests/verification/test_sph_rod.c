@@ -30,8 +30,7 @@ static struct solid_case rod(double particles) {
                                        .axis = {0, 0, 1}};
   c.body[0].lattice.particles = particles;
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD);
-  const struct sph_middle middle = {.axis = {0, 0, 1}, .half = length / 2 - 3 * c.range[0].h};
-  sph_bodies_hold(c.particles, c.range[0], &middle, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+  sph_bodies_hold(c.particles, c.range[0], length / 2 - 3 * c.range[0].h, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
   return c;
 }
 
@@ -219,22 +218,22 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   struct solid_case c = rod(particles);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
-  const double centre[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, young = solid_young(m),
+  const double young = solid_young(m),
                cg = 0.4 * sqrt((m->tillotson.A + 4 * m->elastic.shear_modulus / 3) / m->density);
   const double alpha = 8 * M_PI * pow(cg, 3) * m->weibull.k /
                        ((m->weibull.m + 1) * (m->weibull.m + 2) * (m->weibull.m + 3)),
                q = m->weibull.m + 3;
   const double tf = pow(alpha, -1 / q) * pow(rate, -m->weibull.m / q);
-  const struct sph_middle middle = {.axis = {0, 0, 1}, .half = length / 2 - 5e-3};
+  const double half = length / 2 - 5e-3;
   const struct sph_flaw_law law = {.weibull = m->weibull, .draw = SPH_FLAWS_RANKED, .seed = seed};
   struct sph_flaws *flaws = NULL;
-  OK(sph_flaws_place(&law, &c.body[0].shape, p, c.range[0], &middle, &flaws, &error));
+  OK(sph_flaws_place(&law, &c.body[0].shape, p, c.range[0], half, &flaws, &error));
   c.physics[0].flaws = flaws;
-  sph_bodies_stretch(p, c.range[0], centre, axis, rate, solid_poisson(m));
+  sph_bodies_stretch(p, c.range[0], rate, solid_poisson(m));
   OWNED unsigned char *in = malloc(p->n);
   double count = 0;
   for (size_t i = 0; i < p->n; i++) {
-    in[i] = fabs(p->z[i]) < middle.half;
+    in[i] = fabs(p->z[i]) < half;
     count += in[i];
   }
   solid_start(&c);
@@ -260,7 +259,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   solid_read(&c);
   for (size_t i = 0; i < p->n; i++)
     r.broken += in[i] && p->damage_cbrt[i] > cbrt(0.9) ? 1 / count : 0;
-  r.cracks = r.broken * 2 * middle.half / (2 * c.range[0].spacing);
+  r.cracks = r.broken * 2 * half / (2 * c.range[0].spacing);
   sph_flaws_free(flaws);
   solid_end(&c);
   return r;

@@ -102,9 +102,9 @@ static double spin(bool correction, double turns, double *energy_error) {
   c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_SPHERE, .radius = radius};
   c.body[0].lattice.particles = 600;
   solid_build(&c, SPH_WITH_STRESS);
-  const double axis[3] = {0.36, 0.48, 0.8}, centre[3] = {0, 0, 0},
+  const double axis[3] = {0.36, 0.48, 0.8},
                w[3] = {axis[0] * rim / radius, axis[1] * rim / radius, axis[2] * rim / radius};
-  sph_bodies_spin(c.particles, c.range[0], centre, w);
+  sph_bodies_spin(c.particles, c.range[0], w);
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
   solid_until(&c, turns * 2 * M_PI * radius / rim);
@@ -224,8 +224,8 @@ static struct turned turn_edges(enum sph_shape_kind kind, double w, double until
   c.body[0].lattice.turned = true;
   c.body[0].lattice.seed = 1;
   solid_build(&c, SPH_WITH_STRESS);
-  const double centre[3] = {0, 0, 0}, spin[3] = {0, 0, w};
-  sph_bodies_spin(c.particles, c.range[0], centre, spin);
+  const double spin[3] = {0, 0, w};
+  sph_bodies_spin(c.particles, c.range[0], spin);
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
   double worst = 0;

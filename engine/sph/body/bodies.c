@@ -106,55 +106,39 @@ void sph_bodies_move(struct sph_particles *p, struct sph_range range, const doub
   }
 }
 
-void sph_bodies_stretch(struct sph_particles *p, struct sph_range range, const double centre[3], const double axis[3],
-                        double rate, double ratio) {
-  double w[3];
-  unit(axis, w);
+void sph_bodies_stretch(struct sph_particles *p, struct sph_range range, double rate, double ratio) {
   for (size_t i = range.first; i < range.first + range.n; i++) {
-    const double r[3] = {p->x[i] - centre[0], p->y[i] - centre[1], p->z[i] - centre[2]};
-    const double along = vector3_dot(r, w);
-    p->vx[i] += rate * (along * w[0] - ratio * (r[0] - along * w[0]));
-    p->vy[i] += rate * (along * w[1] - ratio * (r[1] - along * w[1]));
-    p->vz[i] += rate * (along * w[2] - ratio * (r[2] - along * w[2]));
+    p->vx[i] -= rate * (ratio * p->x[i]);
+    p->vy[i] -= rate * (ratio * p->y[i]);
+    p->vz[i] += rate * p->z[i];
   }
 }
 
-void sph_bodies_spin(struct sph_particles *p, struct sph_range range, const double centre[3], const double spin[3]) {
+void sph_bodies_spin(struct sph_particles *p, struct sph_range range, const double spin[3]) {
   for (size_t i = range.first; i < range.first + range.n; i++) {
-    const double r[3] = {p->x[i] - centre[0], p->y[i] - centre[1], p->z[i] - centre[2]};
-    p->vx[i] += spin[1] * r[2] - spin[2] * r[1];
-    p->vy[i] += spin[2] * r[0] - spin[0] * r[2];
-    p->vz[i] += spin[0] * r[1] - spin[1] * r[0];
+    double v[3];
+    vector3_cross(spin, (double[3]){p->x[i], p->y[i], p->z[i]}, v);
+    p->vx[i] += v[0];
+    p->vy[i] += v[1];
+    p->vz[i] += v[2];
   }
 }
 
-bool sph_bodies_beyond(const struct sph_middle *middle, const double point[3]) {
-  double w[3];
-  unit(middle->axis, w);
-  const double r[3] = {point[0] - middle->centre[0], point[1] - middle->centre[1], point[2] - middle->centre[2]};
-  return fabs(vector3_dot(r, w)) > middle->half;
-}
-
-size_t sph_bodies_hold(struct sph_particles *p, struct sph_range range, const struct sph_middle *middle, int freedoms) {
-  size_t count = 0;
+void sph_bodies_hold(struct sph_particles *p, struct sph_range range, double half, int freedoms) {
   for (size_t i = range.first; i < range.first + range.n; i++)
-    if (sph_bodies_beyond(middle, (double[3]){p->x[i], p->y[i], p->z[i]})) {
+    if (fabs(p->z[i]) > half)
       p->held[i] |= (uint8_t)freedoms;
-      count++;
-    }
-  return count;
 }
 
-void sph_bodies_damp(struct sph_particles *p, struct sph_range range, const struct sph_shape *box, int sides,
-                     double margin, double rate) {
+void sph_bodies_damp(struct sph_particles *p, struct sph_range range, const struct sph_shape *box, double margin,
+                     double rate) {
   for (size_t i = range.first; i < range.first + range.n; i++) {
     const double r[3] = {p->x[i] - box->centre[0], p->y[i] - box->centre[1], p->z[i] - box->centre[2]};
     double deepest = 0;
-    for (int side = 0; side < 6; side++)
-      if (sides & 1 << side) {
-        const double from = 0.5 * box->side[side / 2] + (side % 2 ? -1 : 1) * r[side / 2];
-        deepest = fmax(deepest, fmin(1, 1 - from / margin));
-      }
+    for (int side = 0; side < 5; side++) { /* two of x, two of y, the lower of z */
+      const double from = 0.5 * box->side[side / 2] + (side % 2 ? -1 : 1) * r[side / 2];
+      deepest = fmax(deepest, fmin(1, 1 - from / margin));
+    }
     p->damping[i] = fmax(p->damping[i], rate * deepest * deepest);
   }
 }

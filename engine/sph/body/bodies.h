@@ -6,7 +6,7 @@
  *   sph_bodies_aim(&body[0].shape, &body[1].shape, direction, angle, gap, flight)   places the projectile
  *   sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &particles, range, &error)   also checks for overlaps
  *   sph_bodies_move(particles, range[1], velocity)
- *   sph_flaws_place(&law, &body[0].shape, particles, range[0], NULL, &flaws, &error)   (flaws.h) */
+ *   sph_flaws_place(&law, &body[0].shape, particles, range[0], INFINITY, &flaws, &error)   (flaws.h) */
 #pragma once
 
 #include <stdbool.h>
@@ -189,34 +189,15 @@ status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projecti
 
 /* Velocity fields. Each is added to the present velocities. */
 void sph_bodies_move(struct sph_particles *particles, struct sph_range range, const double velocity[3]);
-/* v = rate (along - ratio across): components along and across the `axis` through `centre`; rate in 1/s, `ratio` is
- * Poisson's. */
-void sph_bodies_stretch(struct sph_particles *particles, struct sph_range range, const double centre[3],
-                        const double axis[3], double rate, double ratio);
-/* v = spin x (r - centre), rad/s. */
-void sph_bodies_spin(struct sph_particles *particles, struct sph_range range, const double centre[3],
-                     const double spin[3]);
+/* A stretch along z: v = rate (-ratio x, -ratio y, z); rate in 1/s, `ratio` is Poisson's. */
+void sph_bodies_stretch(struct sph_particles *particles, struct sph_range range, double rate, double ratio);
+/* v = spin x r, rad/s. */
+void sph_bodies_spin(struct sph_particles *particles, struct sph_range range, const double spin[3]);
 
-/* The middle of a body, |(r - centre) . axis| <= half. The rest of the body is its two ends. */
-struct sph_middle {
-  double centre[3]; /* m */
-  double axis[3];   /* of any length but 0 */
-  double half;      /* m */
-};
-bool sph_bodies_beyond(const struct sph_middle *middle, const double point[3]);
-/* Sets the bits `freedoms` of `held` for the particles in the ends, and returns their number. */
-size_t sph_bodies_hold(struct sph_particles *particles, struct sph_range range, const struct sph_middle *middle,
-                       int freedoms);
-
-/* Damping at the far sides of a box, so that waves leave it. The damping rate (1/s) grows as the square of the depth
- * from 0 at `margin` (m) from a damped side to `rate` at the side; the largest of the sides counts. */
-enum sph_side {
-  SPH_SIDE_X0 = 1,
-  SPH_SIDE_X1 = 2,
-  SPH_SIDE_Y0 = 4,
-  SPH_SIDE_Y1 = 8,
-  SPH_SIDE_Z0 = 16,
-  SPH_SIDE_Z1 = 32
-};
-void sph_bodies_damp(struct sph_particles *particles, struct sph_range range, const struct sph_shape *box, int sides,
+/* Sets the bits `freedoms` of `held` in both ends of a body along z, |z| > half (m). */
+void sph_bodies_hold(struct sph_particles *particles, struct sph_range range, double half, int freedoms);
+/* Damping at all sides of a box except the upper one of z, where the impact is, so that waves leave it. The damping
+ * rate (1/s) grows as the square of the depth from 0 at `margin` (m) from a side to `rate` at the side; the largest of
+ * the sides counts. */
+void sph_bodies_damp(struct sph_particles *particles, struct sph_range range, const struct sph_shape *box,
                      double margin, double rate);

@@ -199,7 +199,7 @@ void sph_flaws_free(struct sph_flaws *flaws) {
 
 struct places {
   const struct sph_shape *shape;
-  const struct sph_middle *middle;
+  double half;
   const struct sph_kd_tree *nearest;
   const unsigned char *exempt;
   const struct sph_cells *cells; /* NULL: particles own flaws */
@@ -220,22 +220,19 @@ static size_t nearest_particle(void *context, uint64_t flaw) {
   const struct places *places = context;
   double point[3];
   sph_flaws_point(places->seed, places->body, flaw, places->shape, point);
-  if (places->middle && sph_bodies_beyond(places->middle, point))
+  if (fabs(point[2]) > places->half)
     return SPH_FLAWS_NOBODY;
   const size_t i = sph_kd_tree_find(places->nearest, point);
-  if (places->exempt && places->exempt[i])
+  if (places->exempt[i])
     return SPH_FLAWS_NOBODY;
   return places->cells ? places->cells->of[i] : i;
 }
 
 /* Marks the particles in the ends of the body. NULL without memory. */
-static unsigned char *find_ends(const struct sph_particles *p, struct sph_range range,
-                                const struct sph_middle *middle) {
+static unsigned char *find_ends(const struct sph_particles *p, struct sph_range range, double half) {
   unsigned char *exempt = malloc(range.n);
-  for (size_t i = 0; exempt && i < range.n; i++) {
-    const size_t k = range.first + i;
-    exempt[i] = sph_bodies_beyond(middle, (double[3]){p->x[k], p->y[k], p->z[k]});
-  }
+  for (size_t i = 0; exempt && i < range.n; i++)
+    exempt[i] = fabs(p->z[range.first + i]) > half;
   return exempt;
 }
 
@@ -267,8 +264,7 @@ static unsigned char *exempt_cells(const struct sph_cells *cells, const unsigned
 }
 
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape, const struct sph_particles *p,
-                       struct sph_range range, const struct sph_middle *middle, struct sph_flaws **out,
-                       struct error *error) {
+                       struct sph_range range, double half, struct sph_flaws **out, struct error *error) {
   *out = NULL;
   struct sph_flaw_law full = *law;
   OWNED struct sph_cells *cells = NULL; /* the owners of flaws; NULL: particles */
@@ -276,10 +272,10 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   if (law->cell_width > 0)
     TRY(sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &cells, error));
   const bool unequal = cells || is_graded(p, range);
-  OWNED unsigned char *ends = middle ? find_ends(p, range, middle) : NULL;
+  OWNED unsigned char *ends = find_ends(p, range, half);
   OWNED unsigned char *ends_cells = ends && cells ? exempt_cells(cells, ends) : NULL;
   OWNED double *share = unequal ? find_shares(p, range, cells) : NULL;
-  if ((middle && !ends) || (ends && cells && !ends_cells) || (unequal && !share))
+  if (!ends || (cells && !ends_cells) || (unequal && !share))
     return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
   TRY(sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &nearest, error));
   const size_t n = cells ? cells->count : range.n;
@@ -287,7 +283,7 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
   full.exempt = cells ? ends_cells : ends;
   full.share = share;
-  struct places places = {shape, middle, nearest, ends, cells, law->seed, law->body};
+  struct places places = {shape, half, nearest, ends, cells, law->seed, law->body};
   TRY(sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error));
   (*out)->particles = range.n;
   (*out)->cells = cells;

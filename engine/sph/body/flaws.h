@@ -73,7 +73,7 @@ void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
 
 /* The flaws of a body. Their points are uniform in the shape; each flaw belongs to the nearest particle (of two, to
  * that with the lower id). law->volume is not used: V is the shape's volume over law->solid_ratio. With
- * `middle` (NULL: whole body), flaws in the ends are dropped and particles there have none.
+ * `half`, flaws in the ends |z| > half (m) are dropped and particles there have none.
  *
  * n (ln n + 0.5772) flaws are drawn, as many as equal cells need on average until each has one; law->number says what a
  * particle without a flaw gets. (Drawing until each has one would count the smallest cell: cells cut by the surface
@@ -81,7 +81,7 @@ void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
  * law->cell_width, n counts cells, and a flaw belongs to the cell of the nearest particle. STATUS_MEMORY;
  * STATUS_CONTENT when m, k or the volume is not a positive number, or all particles are in the ends. */
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape,
-                       const struct sph_particles *particles, struct sph_range range, const struct sph_middle *middle,
+                       const struct sph_particles *particles, struct sph_range range, double half,
                        struct sph_flaws **out, struct error *error);
 
 /* The place of flaw `flaw` = 0, 1, ... */

@@ -103,8 +103,7 @@ static void ring(struct sph_run *run) {
 static status grip(struct sph_run *run, struct error *error) {
   const double length = run->inputs.stretch.grip;
   bool below = false, above = false;
-  sph_bodies_hold(run->start, run->range[0],
-                  &(struct sph_middle){.axis = {0, 0, 1}, .half = run->inputs.target.length / 2 - length},
+  sph_bodies_hold(run->start, run->range[0], run->inputs.target.length / 2 - length,
                   SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
   for (size_t i = 0; i < run->range[0].n; i++)
     if (run->start->held[i])
@@ -140,7 +139,7 @@ static status push(struct sph_run *run, struct error *error) {
 
 static status set_in_motion(struct sph_run *run, const double flight[3], struct error *error) {
   const struct sph_inputs *in = &run->inputs;
-  const double origin[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, spin[3] = {0, 0, in->target.spin};
+  const double spin[3] = {0, 0, in->target.spin};
   double v[3] = {0, 0, 0};
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT:
@@ -148,10 +147,10 @@ static status set_in_motion(struct sph_run *run, const double flight[3], struct 
       v[k] = in->impact.speed * flight[k];
     sph_bodies_move(run->start, run->range[1], v);
     if (in->target.spin != 0)
-      sph_bodies_spin(run->start, run->range[0], origin, spin);
+      sph_bodies_spin(run->start, run->range[0], spin);
     break;
   case SPH_STRETCH:
-    sph_bodies_stretch(run->start, run->range[0], origin, axis, in->stretch.rate,
+    sph_bodies_stretch(run->start, run->range[0], in->stretch.rate,
                        in->target.strength ? sph_material_poisson_ratio(&in->target.material) : 0);
     return grip(run, error);
   case SPH_VIBRATION: ring(run); break;
@@ -169,7 +168,8 @@ static status set_in_motion(struct sph_run *run, const double flight[3], struct 
 
 static status make_flaws(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
-  struct sph_middle middle = {.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.flaw_free};
+  const bool has_ends = in->kind == SPH_STRETCH && in->stretch.flaw_free > 0;
+  const double half = has_ends ? in->target.length / 2 - in->stretch.flaw_free : (double)INFINITY;
   for (int b = 0; b < run->body_count; b++) {
     const struct sph_body_inputs *body = inputs_of(run, b);
     if (!sph_derived_cracks(body))
@@ -180,8 +180,7 @@ static status make_flaws(struct sph_run *run, struct error *error) {
                                .cell_width = in->crack_cell.width,
                                .seed = run->seed,
                                .body = (uint64_t)b};
-    TRY(sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],
-                        in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b], error));
+    TRY(sph_flaws_place(&law, &run->shape[b], run->start, run->range[b], half, &run->flaws[b], error));
     run->flaw_count += run->flaws[b]->count;
   }
   return STATUS_OK;
@@ -193,8 +192,7 @@ static status damp(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   if (!run->start->damping)
     return STATUS_OK;
-  sph_bodies_damp(run->start, run->range[0], &run->shape[0],
-                  SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, in->sides.depth,
+  sph_bodies_damp(run->start, run->range[0], &run->shape[0], in->sides.depth,
                   10.5 * sph_derived_wave_speed(&in->target) / in->sides.depth);
   for (size_t i = 0; i < run->range[0].n; i++)
     if (run->start->damping[i] > 0)
