@@ -142,10 +142,9 @@ struct engine_kind {
   /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary
    * name and renamed. Pictures are drawn from it, too. NULL: the engine has none, and no restart files. */
   status (*write_snapshot)(void *run, const char *path, struct error *error);
-  /* The moving system as system_size bytes, for restart files (engine/restart.h). load_system: STATUS_CONTENT when the
-   * bytes fit no system of this run, STATUS_MEMORY. */
-  size_t (*system_size)(const void *run);
-  void (*save_system)(const void *run, void *bytes);
+  /* The moving system as bytes, which the caller frees, for restart files (engine/restart.h). NULL: no memory.
+   * load_system: STATUS_CONTENT when the bytes fit no system of this run, STATUS_MEMORY. */
+  void *(*copy_system)(const void *run, size_t *size);
   status (*load_system)(void *run, const void *bytes, size_t size, struct error *error);
   void (*free)(void *run); /* NULL is fine */
 };

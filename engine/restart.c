@@ -22,27 +22,28 @@ struct part {
   size_t size;
 };
 
-size_t restart_blocks_size(const struct restart_block *blocks, size_t count) {
+static size_t size_of(const struct restart_block *blocks, size_t count) {
   size_t total = 0;
   for (size_t k = 0; k < count; k++)
     total += blocks[k].size;
   return total;
 }
 
-void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes) {
-  unsigned char *to = bytes;
-  for (size_t k = 0; k < count; k++) {
+void *restart_blocks_copy(const struct restart_block *blocks, size_t count, size_t *size) {
+  *size = size_of(blocks, count);
+  unsigned char *bytes = malloc(*size), *to = bytes;
+  for (size_t k = 0; bytes && k < count; to += blocks[k++].size)
     memcpy(to, blocks[k].at, blocks[k].size);
-    to += blocks[k].size;
-  }
+  return bytes;
 }
 
-void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes) {
+bool restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes, size_t size) {
   const unsigned char *from = bytes;
-  for (size_t k = 0; k < count; k++) {
+  if (size != size_of(blocks, count))
+    return false;
+  for (size_t k = 0; k < count; from += blocks[k++].size)
     memcpy(blocks[k].at, from, blocks[k].size);
-    from += blocks[k].size;
-  }
+  return true;
 }
 
 static char *identity(const struct engine_kind *kind, const void *inputs) {
@@ -128,11 +129,10 @@ static status write_parts(const struct engine_kind *kind, const void *inputs, ui
 
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
   const struct frame *frame = run;
-  const size_t size = kind->system_size(run);
-  OWNED void *system = malloc(size);
+  size_t size;
+  OWNED void *system = kind->copy_system(run, &size);
   if (!system)
     return status_fail(error, STATUS_MEMORY, "no memory to save '%s'", path);
-  kind->save_system(run, system);
   const struct part parts[PARTS] = {
       [STATE] = {frame->state, frame->state_size},
       [SAMPLES] = {frame->sample, frame->state->samples * frame->sample_size},

@@ -18,10 +18,10 @@ struct restart_block {
   void *at;
   size_t size; /* bytes */
 };
-size_t restart_blocks_size(const struct restart_block *blocks, size_t count); /* total bytes */
-/* `bytes` holds all blocks one after the other. */
-void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes);
-void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes);
+/* All blocks one after the other, `size` bytes, which the caller frees. NULL: no memory. */
+void *restart_blocks_copy(const struct restart_block *blocks, size_t count, size_t *size);
+/* False, and nothing is loaded, when the blocks have another size. */
+bool restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes, size_t size);
 
 /* STATUS_IO, STATUS_MEMORY. */
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error);

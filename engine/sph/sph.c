@@ -15,12 +15,8 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
   return code;
 }
 
-static size_t system_size(const void *run) {
-  return sph_system_state_size(((const struct sph_run *)run)->system);
-}
-
-static void save_system(const void *run, void *bytes) {
-  sph_system_state_save(((const struct sph_run *)run)->system, bytes);
+static void *copy_system(const void *run, size_t *size) {
+  return sph_system_state_copy(((const struct sph_run *)run)->system, size);
 }
 
 static status load_system(void *run, const void *bytes, size_t size, struct error *error) {
@@ -141,8 +137,7 @@ const struct engine_kind sph_engine = {
     .time = frame_time,
     .finish = sph_report_finish,
     .write_snapshot = sph_snapshot_write,
-    .system_size = system_size,
-    .save_system = save_system,
+    .copy_system = copy_system,
     .load_system = load_system,
     .free = sph_run_free,
 };

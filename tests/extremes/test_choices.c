@@ -116,10 +116,9 @@ static void hear_run(const struct engine_kind *kind, void *run, const struct out
     for (size_t k = 0; k < 3; k++)
       fprintf(heard[PINNED].file, " %a %a %a", f->position[k], f->velocity[k], f->spin[k]);
   }
-  const size_t size = kind->system_size(run);
-  OWNED void *bytes = calloc(size, 1);
+  size_t size;
+  OWNED void *bytes = kind->copy_system(run, &size);
   assert_non_null(bytes);
-  kind->save_system(run, bytes);
   fwrite(bytes, 1, size, heard[PINNED].file);
   fprintf(heard[PINNED].file, "%a %a\n", kind->progress(run), kind->time(run));
 }

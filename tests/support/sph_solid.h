@@ -219,19 +219,10 @@ UNUSED static struct solid_case solid_pulled_cube(double side, double strain) {
   return c;
 }
 
-/* The state of a system as a restart file holds it. malloc'd. */
-UNUSED static unsigned char *solid_state(const struct sph_system *system, size_t *size) {
-  *size = sph_system_state_size(system);
-  unsigned char *bytes = malloc(*size);
-  assert_non_null(bytes);
-  sph_system_state_save(system, bytes);
-  return bytes;
-}
-
 /* Makes the system of `c` again and gives it the state of another one, as a restart does. */
 UNUSED static void solid_resume(struct solid_case *c, const struct sph_system *from) {
   size_t size;
-  OWNED unsigned char *state = solid_state(from, &size);
+  OWNED void *state = sph_system_state_copy(from, &size);
   solid_start(c);
   assert_true(sph_system_state_load(c->system, state, size));
 }
@@ -239,7 +230,7 @@ UNUSED static void solid_resume(struct solid_case *c, const struct sph_system *f
 /* Fails unless both systems have the same state, bit by bit. */
 UNUSED static void solid_same(const struct solid_case *a, const struct solid_case *b) {
   size_t size, size_b;
-  OWNED unsigned char *state = solid_state(a->system, &size), *other = solid_state(b->system, &size_b);
+  OWNED void *state = sph_system_state_copy(a->system, &size), *other = sph_system_state_copy(b->system, &size_b);
   assert_int_equal(size, size_b);
   assert_memory_equal(state, other, size);
 }

@@ -154,14 +154,10 @@ status toy_write_fields(void *run, const char *path, struct error *error) {
   return file_write(path, "fields file", text, (size_t)length, error);
 }
 
-static size_t system_size(const void *run) {
+static void *copy_system(const void *run, size_t *size) {
   (void)run;
-  return 1; /* no system, but a block of memory all the same */
-}
-
-static void save_system(const void *run, void *bytes) {
-  (void)run;
-  memset(bytes, 0, 1);
+  *size = 1; /* no system, but a block of memory all the same */
+  return calloc(1, 1);
 }
 
 static status load_system(void *run, const void *bytes, size_t size, struct error *error) {
@@ -186,7 +182,6 @@ struct engine_kind toy_engine = {.name = "toy",
                                  .time = time_of,
                                  .finish = finish,
                                  .write_snapshot = toy_write_fields,
-                                 .system_size = system_size,
-                                 .save_system = save_system,
+                                 .copy_system = copy_system,
                                  .load_system = load_system,
                                  .free = free};

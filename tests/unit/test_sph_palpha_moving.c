@@ -227,14 +227,6 @@ static void impact_end(struct impact *m) {
   sph_flaws_free(m->flaws[1]);
 }
 
-static void *saved(const struct sph_system *s, size_t *size) {
-  *size = sph_system_state_size(s);
-  void *bytes = malloc(*size);
-  assert_non_null(bytes);
-  sph_system_state_save(s, bytes);
-  return bytes;
-}
-
 /* alpha_0 = 1 is the solid itself: the same bits and bytes, and no arrays for pores. */
 TEST(solid_bits) {
   struct sph_palpha_material none = porous_basalt;
@@ -243,7 +235,7 @@ TEST(solid_bits) {
   case_steps(a.s, 60);
   case_steps(b.s, 60);
   size_t na, nb;
-  OWNED void *sa = saved(a.s, &na), *sb = saved(b.s, &nb);
+  OWNED void *sa = sph_system_state_copy(a.s, &na), *sb = sph_system_state_copy(b.s, &nb);
   assert_int_equal(na, nb);
   assert_memory_equal(sa, sb, na);
   assert_int_equal(a.s->arena_doubles, b.s->arena_doubles);
@@ -300,12 +292,12 @@ TEST(restart) {
   struct impact a = impact_of(&porous_basalt, &two_power, true), b = impact_of(&porous_basalt, &two_power, true);
   case_steps(a.s, 40);
   size_t size;
-  OWNED void *bytes = saved(a.s, &size);
+  OWNED void *bytes = sph_system_state_copy(a.s, &size);
   assert_true(sph_system_state_load(b.s, bytes, size));
   case_steps(a.s, 40);
   case_steps(b.s, 40);
   size_t na, nb;
-  OWNED void *sa = saved(a.s, &na), *sb = saved(b.s, &nb);
+  OWNED void *sa = sph_system_state_copy(a.s, &na), *sb = sph_system_state_copy(b.s, &nb);
   assert_int_equal(na, nb);
   assert_memory_equal(sa, sb, na);
   impact_end(&a);

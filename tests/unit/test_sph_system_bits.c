@@ -2,18 +2,11 @@
  * and numbering. */
 #include "tests/support/sph_collision.h"
 
-static size_t everything(const struct sph_system *s, unsigned char **bytes) {
-  const size_t size = sph_system_state_size(s);
-  *bytes = malloc(size);
-  sph_system_state_save(s, *bytes);
-  return size;
-}
-
 static void assert_same_bits(const struct sph_system *a, const struct sph_system *b) {
-  OWNED unsigned char *left = NULL, *right = NULL;
-  const size_t size = everything(a, &left);
-  assert_int_equal(size, everything(b, &right));
-  assert_memory_equal(left, right, size);
+  size_t size[2];
+  OWNED void *left = sph_system_state_copy(a, &size[0]), *right = sph_system_state_copy(b, &size[1]);
+  assert_int_equal(size[0], size[1]);
+  assert_memory_equal(left, right, size[0]);
 }
 
 TEST(restarted) {
@@ -22,8 +15,8 @@ TEST(restarted) {
   struct sph_system *again = case_system(c.particles, 2, c.physics, &c.parameters);
   for (int cut = 0; cut < 3; cut++) {
     case_steps(whole, 37);
-    OWNED unsigned char *bytes = NULL;
-    const size_t size = everything(whole, &bytes);
+    size_t size;
+    OWNED void *bytes = sph_system_state_copy(whole, &size);
     for (size_t k = 0; k < again->block_count; k++)
       again->block[k].slack = 1; /* of where its particles were before */
     assert_true(sph_system_state_load(again, bytes, size));
@@ -83,8 +76,8 @@ TEST(every_module) {
     c.parameters.in.fidelity.threads = 2;
     struct sph_system *again = case_system(c.particles, 2, c.physics, &c.parameters);
     case_steps(whole, 45);
-    OWNED unsigned char *bytes = NULL;
-    const size_t size = everything(whole, &bytes);
+    size_t size;
+    OWNED void *bytes = sph_system_state_copy(whole, &size);
     assert_true(sph_system_state_load(again, bytes, size)); /* in the middle, and with other threads */
     case_steps(whole, 45);
     case_steps(again, 45);

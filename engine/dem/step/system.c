@@ -464,10 +464,11 @@ static bool runge_kutta(struct dem_system *s, const struct trial *t, double *con
 }
 
 bool dem_system_start_gear(struct dem_system *s) {
-  const size_t n = s->padded, arrays = 3 * (4 + TRIAL_STEPS + 1), size = dem_system_state_size(s);
+  const size_t n = s->padded, arrays = 3 * (4 + TRIAL_STEPS + 1);
+  size_t size;
   const double dt = s->in->fidelity.time_step;
   OWNED double *memory = malloc(arrays * n * sizeof *memory);
-  OWNED void *state = malloc(size);
+  OWNED void *state = dem_system_state_copy(s, &size);
   struct trial t;
   bool done = memory && state;
   s->no_memory = !done;
@@ -480,7 +481,6 @@ bool dem_system_start_gear(struct dem_system *s) {
     for (size_t c = 0; c < sizeof columns / sizeof *columns; ++c, next += n)
       *columns[c] = next;
   }
-  dem_system_state_save(s, state);
   for (int step = 0; step < TRIAL_STEPS && done; step++)
     done = runge_kutta(s, &t, t.a[step]);
   accelerations(s, t.a[TRIAL_STEPS]);
@@ -603,16 +603,10 @@ double dem_system_stable_time_step(const struct dem_system *s) {
 
 /* ---- saving the state, for restart files and trial steps ---- */
 
-size_t dem_system_state_size(const struct dem_system *system) {
-  struct dem_system view = *system; /* blocks need a writable system; here they are only counted */
+void *dem_system_state_copy(const struct dem_system *system, size_t *size) {
+  struct dem_system view = *system; /* blocks need a writable system; here they are only read */
   struct restart_block blocks[SAVED];
-  return restart_blocks_size(blocks, saved_blocks(&view, blocks));
-}
-
-void dem_system_state_save(const struct dem_system *system, void *bytes) {
-  struct dem_system view = *system;
-  struct restart_block blocks[SAVED];
-  restart_blocks_save(blocks, saved_blocks(&view, blocks), bytes);
+  return restart_blocks_copy(blocks, saved_blocks(&view, blocks), size);
 }
 
 bool dem_system_state_load(struct dem_system *s, const void *bytes, size_t size) {
@@ -627,11 +621,9 @@ bool dem_system_state_load(struct dem_system *s, const void *bytes, size_t size)
 
   const struct dem_progress before = s->now;
   s->now = saved;
-  if (dem_system_state_size(s) != size) {
-    s->now = before;
-    return false;
-  }
   struct restart_block blocks[SAVED];
-  restart_blocks_load(blocks, saved_blocks(s, blocks), bytes);
-  return true;
+  if (restart_blocks_load(blocks, saved_blocks(s, blocks), bytes, size))
+    return true;
+  s->now = before;
+  return false;
 }

@@ -64,8 +64,7 @@ double dem_system_overlap_share(struct dem_system *system);
 /* Current outline of a grain, counter-clockwise; returns the number of vertices (up to capacity are written). */
 size_t dem_system_outline(const struct dem_system *system, uint32_t grain, size_t capacity, struct dem_point *vertices);
 
-/* Everything that the next step depends on: a restored run continues with the same bits. load: false when the bytes do
- * not fit this system, or without memory. */
-size_t dem_system_state_size(const struct dem_system *system);
-void dem_system_state_save(const struct dem_system *system, void *bytes);
+/* Everything that the next step depends on: a restored run continues with the same bits. copy: malloc'd, NULL without
+ * memory. load: false when the bytes do not fit this system, or without memory. */
+void *dem_system_state_copy(const struct dem_system *system, size_t *size);
 bool dem_system_state_load(struct dem_system *system, const void *bytes, size_t size);

@@ -536,27 +536,18 @@ static size_t saved(struct sph_system *s, struct restart_block out[BLOCKS]) {
   return count;
 }
 
-size_t sph_system_state_size(const struct sph_system *system) {
-  struct sph_system view = *system; /* blocks need a writable system; here they are only counted */
+void *sph_system_state_copy(const struct sph_system *system, size_t *size) {
+  struct sph_system view = *system; /* blocks need a writable system; here they are only read */
   struct restart_block blocks[BLOCKS];
-  return restart_blocks_size(blocks, saved(&view, blocks));
-}
-
-void sph_system_state_save(const struct sph_system *system, void *bytes) {
-  struct sph_system view = *system;
-  struct restart_block blocks[BLOCKS];
-  restart_blocks_save(blocks, saved(&view, blocks), bytes);
+  return restart_blocks_copy(blocks, saved(&view, blocks), size);
 }
 
 bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size) {
   struct restart_block blocks[BLOCKS];
-  size_t n;
-  if (size != sph_system_state_size(s))
+  const size_t n = s->n;
+  if (size < sizeof n || memcmp(&n, bytes, sizeof n) != 0 ||
+      !restart_blocks_load(blocks, saved(s, blocks), bytes, size))
     return false;
-  memcpy(&n, bytes, sizeof n);
-  if (n != s->n)
-    return false;
-  restart_blocks_load(blocks, saved(s, blocks), bytes);
   for (size_t i = 0; i < n; i++)
     if (s->id[i] >= n) {
       s->fault = SPH_FAULT_NOT_FINITE;

@@ -74,10 +74,10 @@ void sph_system_read(const struct sph_system *system, struct sph_particles *out)
  * flaws. */
 bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
 
-size_t sph_system_state_size(const struct sph_system *system);
-void sph_system_state_save(const struct sph_system *system, void *bytes);
-bool sph_system_state_load(struct sph_system *system, const void *bytes,
-                           size_t size); /* the next steps give the same bits */
+/* Everything that the next step depends on: a restored run continues with the same bits. copy: malloc'd, NULL without
+ * memory. load: false when the bytes do not fit this system. */
+void *sph_system_state_copy(const struct sph_system *system, size_t *size);
+bool sph_system_state_load(struct sph_system *system, const void *bytes, size_t size);
 
 /* Memory layout of the moving system; for engine/sph/ and its tests only.
  *
