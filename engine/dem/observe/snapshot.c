@@ -12,20 +12,19 @@
 enum { OUTLINE_CORNERS = 64, VTK_POLYGON = 7 };
 
 struct grain_row {
-  double position[2], angle, velocity[2], spin, mass, moment_of_inertia;
-  bool present;
+  struct dem_grain its;
   double fragment;
 };
-#define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(grain_row, member, width, __VA_ARGS__)
+#define COLUMN(name, member, width, ...) SNAPSHOT_FILE_COLUMN_NAMED(name, grain_row, member, width, __VA_ARGS__)
 static const struct snapshot_file_column grain_columns[] = {
-    COLUMN(position, 2, "m", "centre of mass"),
-    COLUMN(angle, 0, "rad", "rotation since the start, counter-clockwise"),
-    COLUMN(velocity, 2, "m s-1", "velocity of the centre of mass"),
-    COLUMN(spin, 0, "rad s-1", "angular velocity, counter-clockwise"),
-    COLUMN(mass, 0, "kg m-1", "mass per metre of thickness"),
-    COLUMN(moment_of_inertia, 0, "kg m", "about the centre of mass, per metre of thickness"),
-    COLUMN(present, 0, "1", "0: the explosive grain, burnt"),
-    COLUMN(fragment, 0, "1", "number of its fragment by descending mass; -1: none"),
+    COLUMN("position", its.x, 2, "m", "centre of mass"), /* x and y */
+    COLUMN("angle", its.angle, 0, "rad", "rotation since the start, counter-clockwise"),
+    COLUMN("velocity", its.vx, 2, "m s-1", "velocity of the centre of mass"),
+    COLUMN("spin", its.spin, 0, "rad s-1", "angular velocity, counter-clockwise"),
+    COLUMN("mass", its.mass, 0, "kg m-1", "mass per metre of thickness"),
+    COLUMN("moment_of_inertia", its.moment_of_inertia, 0, "kg m", "about the centre of mass, per metre of thickness"),
+    COLUMN("present", its.present, 0, "1", "0: the explosive grain, burnt"),
+    COLUMN("fragment", fragment, 0, "1", "number of its fragment by descending mass; -1: none"),
 };
 #undef COLUMN
 
@@ -88,17 +87,8 @@ static void add_grains(struct snapshot_file *file, const struct dem_run *run, co
     snapshot_file_fail(file);
     return;
   }
-  for (uint32_t i = 0; i < n; i++) {
-    struct dem_grain g = dem_system_grain(run->system, i);
-    row[i] = (struct grain_row){.position = {g.x, g.y},
-                                .angle = g.angle,
-                                .velocity = {g.vx, g.vy},
-                                .spin = g.spin,
-                                .mass = g.mass,
-                                .moment_of_inertia = g.moment_of_inertia,
-                                .present = g.present,
-                                .fragment = label[i] == UINT32_MAX ? -1.0 : (double)label[i]};
-  }
+  for (uint32_t i = 0; i < n; i++)
+    row[i] = (struct grain_row){dem_system_grain(run->system, i), label[i] == UINT32_MAX ? -1.0 : (double)label[i]};
   COLUMNS("grains", n, row, grain_columns);
 }
 
