@@ -44,6 +44,11 @@ static bool rests_on(const char *names, const char *results) {
   return false;
 }
 
+bool condition_given(const struct field_table *inputs, const char *path, double value) {
+  const double usual = field_find(inputs, path, NULL)->number;
+  return value < usual || value > usual;
+}
+
 bool condition_broken(const struct condition *c, double number) {
   const double rounding = 1e-12; /* dust of just two particles is 1.999999999999999 of them */
   return c->least ? number < c->bound * (1 - rounding) : number > c->bound * (1 + rounding);

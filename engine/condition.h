@@ -69,6 +69,9 @@ struct condition {
 /* A number where the condition applies; NaN elsewhere. */
 #define CONDITION_ONLY(applies, number) ((applies) ? (number) : (double)NAN)
 
+/* Is the value of an input not the default of its row? */
+bool condition_given(const struct field_table *inputs, const char *path, double value);
+
 /* Is a number beyond the bound, by more than rounding? Not when it is NaN. */
 bool condition_broken(const struct condition *condition, double number);
 

@@ -47,7 +47,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
         sum += best * best;
       }
       square[i * n + j] = sum;
-      reach[i * n + j] = o->across_bodies || p->body[i] == p->body[j] ? o->link_length * (h[i] + h[j]) / 2 : -1;
+      reach[i * n + j] = p->body[i] == p->body[j] ? o->link_length * (h[i] + h[j]) / 2 : -1;
       if (left_out[i] || left_out[j])
         reach[i * n + j] = -1;
     }
@@ -109,7 +109,6 @@ TEST(equals_brute_force) {
     o.link_length = 0.7 + 0.1 * (double)(seed % 6);
     o.layer = seed % 4 != 0;
     o.layer_width = seed % 3 == 1 ? 0.1 * (double)(seed % 13) : 0;
-    o.across_bodies = seed % 2;
     for (int d = 0; d < 3; d++)
       if (seed >> d & 1)
         o.periodic[d] = seed % 7 == 3 ? 2.1 : box; /* thin boxes, too */
@@ -272,7 +271,7 @@ TEST(static_strength_breaks) {
   sph_fragments_clear(&f);
 }
 
-/* Two blocks in contact are two fragments unless across_bodies is set; a body that is left out is never counted. */
+/* Two blocks in contact are two fragments; a body that is left out is never counted. */
 TEST(bodies_touch_or_are_left_out) {
   SPH_PARTICLES *p = make(10, 0);
   struct sph_fragments_options o = sph_fragments_default();
@@ -287,10 +286,6 @@ TEST(bodies_touch_or_are_left_out) {
   assert_int_equal(f.count, 2);
   assert_true(f.fragments[0].mass == 6 && f.fragments[1].mass == 4 && f.mass == 10);
   assert_int_equal(f.fragments[1].first, 6);
-  sph_fragments_clear(&f);
-  o.across_bodies = true;
-  f = find(p, &o);
-  assert_int_equal(f.count, 1);
   sph_fragments_clear(&f);
   bodies[0].left_out = true;
   f = find(p, &o);

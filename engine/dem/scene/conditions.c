@@ -81,23 +81,19 @@ BEFORE(undamped, in->contact.law != DEM_CONTACT_OFF && in->contact.damping_bonde
                      !(in->contact.normal_damping > 0) &&
                      !(in->contact.tangential_damping > 0 && in->contact.friction > 0))
 
-/* Is an input not the default of its row? */
-static bool is_given(const char *path, double value) {
-  const double usual = field_find(&dem_inputs, path, NULL)->number;
-  return value < usual || value > usual;
-}
+#define GIVEN(path, value) condition_given(&dem_inputs, path, value)
 
 /* A modulus of overlaps, and no force of overlaps. */
 static double unpressed(const void *inputs) {
   const struct dem_inputs *in = inputs;
-  return in->contact.law == DEM_CONTACT_OFF && is_given("grain.young_modulus", in->grain.young_modulus);
+  return in->contact.law == DEM_CONTACT_OFF && GIVEN("grain.young_modulus", in->grain.young_modulus);
 }
 
 /* A rule of the end of breaking, and nothing breaks. */
 static double unbreakable(const void *inputs) {
   const struct dem_inputs *in = inputs;
   return !dem_inputs_loaded(in) && !in->threshold.breaking &&
-         (is_given("stop.quiet_time", in->stop.quiet_time) || is_given("stop.least_time", in->stop.least_time));
+         (GIVEN("stop.quiet_time", in->stop.quiet_time) || GIVEN("stop.least_time", in->stop.least_time));
 }
 
 /* One of friction and tangential damping without the other. */

@@ -86,7 +86,6 @@ struct sph_fragments_options {
   bool layer;         /* step 3 */
   double layer_width; /* m: the damaged layer is as deep as this; 0: a link */
   bool whole_shear;   /* damage does not scale the deviator (sph_modules_damage_scales_shear): of the static strength */
-  bool across_bodies; /* particles of two bodies may be friends. Off by default: bodies that touch are not bonded */
   const double *h;    /* m, by particle: the initial smoothing lengths, so that expanding matter does not link farther.
                        * NULL: the current ones. Borrowed */
   double periodic[3]; /* m, length of the periodic box per direction; NaN = open */

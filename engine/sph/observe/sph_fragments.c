@@ -92,8 +92,9 @@ static void classify(struct search *s) {
   }
 }
 
+/* Bodies that touch are not bonded. */
 static bool friends(const struct search *s, uint32_t i, uint32_t j) {
-  return s->options->across_bodies || s->p->body[i] == s->p->body[j];
+  return s->p->body[i] == s->p->body[j];
 }
 
 /* Step 2: joins the cores of two unbroken particles. */

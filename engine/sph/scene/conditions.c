@@ -525,23 +525,18 @@ AFTER(hot, ONLY(in->target.strength, share_of(run, is_hot_and_whole, NULL)))
 
 /* ---- inputs without effect ---- */
 
-/* Is an input not the default of its row? */
-static bool is_given(const char *path, double value) {
-  const double usual = field_find(&sph_inputs, path, NULL)->number;
-  return value < usual || value > usual;
-}
+#define GIVEN(path, value) condition_given(&sph_inputs, path, value)
 
 /* An input of fracture of a scene that cannot crack. */
 BEFORE(no_fracture,
        !sph_derived_scene_cracks(in) && in->target.strength &&
            (in->crack_cell.width > 0 || in->crack_front.front != SPH_CRACK_FRONT_NONE ||
-            is_given("fracture.growth", in->fracture.growth) || is_given("fracture.cap", in->fracture.cap) ||
-            is_given("fracture.crack_radius", in->fracture.crack_radius) ||
-            is_given("fracture.draw", in->weibull.draw) || is_given("fidelity.flaws", in->weibull.flaws) ||
-            is_given("stop.quiet_growth", in->stop.quiet_growth) ||
-            is_given("fidelity.damage_step", in->fracture.damage_step) ||
+            GIVEN("fracture.growth", in->fracture.growth) || GIVEN("fracture.cap", in->fracture.cap) ||
+            GIVEN("fracture.crack_radius", in->fracture.crack_radius) || GIVEN("fracture.draw", in->weibull.draw) ||
+            GIVEN("fidelity.flaws", in->weibull.flaws) || GIVEN("stop.quiet_growth", in->stop.quiet_growth) ||
+            GIVEN("fidelity.damage_step", in->fracture.damage_step) ||
             fabs(in->stop.quiet_time / sph_derived_quiet_time(in) - 1) > 1e-9 || in->fragments.static_strength > 0 ||
-            (!is_porous(&in->target) && (in->crack_surfaces.on || is_given("fragments.damage", in->fragments.damage)))))
+            (!is_porous(&in->target) && (in->crack_surfaces.on || GIVEN("fragments.damage", in->fragments.damage)))))
 
 /* A limit of tension of a body with flaws. */
 BEFORE(no_limit, (sph_derived_cracks(&in->target) && isfinite(in->target.material.tension_limit.pressure)) ||
