@@ -104,7 +104,7 @@ static status run(const struct command_line *line, struct error *error) {
   TRY(ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &line->choice, &pairs, error));
   TABLE table = table_new(line->format, stdout);
   const bool people = table_for_people(line->format);
-  const struct sample_range range = views_range(ask_pairs_quantity(pairs));
+  const struct sample_range range = views_range(pairs->quantity);
   name_columns(table, people, &range);
   struct ask_doubts doubts = {0};
   struct untold untold = {0};
@@ -121,15 +121,11 @@ static status run(const struct command_line *line, struct error *error) {
   }
   TRY(ask_pairs_end(pairs, error));
   TRY(table_end(table, error));
-  for (int side = 0; side < 2; side++) {
-    const char *path;
-    int64_t left_out, wanted;
-    const int64_t count = ask_pairs_excluded(pairs, side, &left_out, &path);
-    const char *campaign, *numbers = ask_pairs_namesakes(pairs, side, &campaign);
-    uncertainty_namesakes(numbers, campaign, path);
-    uncertainty_excluded(count, path);
-    uncertainty_missing(ask_pairs_missing(pairs, side, &wanted), wanted, path);
-    uncertainty_left_out(left_out);
+  for (const struct ask_pairs_side *side = pairs->side; side < pairs->side + 2; side++) {
+    uncertainty_namesakes(side->namesakes, side->choice.campaign, side->path);
+    uncertainty_excluded(side->excluded, side->path);
+    uncertainty_missing(side->missing, side->wanted, side->path);
+    uncertainty_left_out(side->left_out);
   }
   OWNED char *apart = NULL, *alone = NULL;
   TRY(ask_pairs_alone(pairs, &alone, error));
@@ -139,13 +135,13 @@ static status run(const struct command_line *line, struct error *error) {
   if (*apart)
     fprintf(stderr, "clast: a and b also differ in %s\n", apart);
   if (people) {
-    TRY(tell_untold(&untold, ask_pairs_quantity(pairs), error));
+    TRY(tell_untold(&untold, pairs->quantity, error));
     uncertainty_doubts(&doubts, stderr);
     fprintf(
         stderr,
         "clast: %s: means, and b minus a, with 95 %% intervals over seeds%s; the difference of pairs with one seed, "
         "or (pairs 0) of independent runs. It does not hold the error of the resolution\n",
-        ask_pairs_quantity(pairs), weak ? " (~: weak, too few runs)" : "");
+        pairs->quantity, weak ? " (~: weak, too few runs)" : "");
     if (part)
       fputs("clast: means are of all runs; runs without a partner of their seed are not in the difference\n", stderr);
     if (equal)

@@ -470,7 +470,30 @@ status ask_group_idle(struct store *store, char idle[ASK_GROUP_POOLED], struct e
 
 /* ---- The pairs of points that `clast compare` compares, and their differences. ---- */
 
-struct ask_pairs; /* opaque */
+struct ask_pairs_group; /* the runs of one point */
+
+struct ask_pairs_side {
+  char path[LIMITS_PATH];               /* of the store */
+  int64_t excluded;                     /* runs that a person excluded */
+  int64_t missing, wanted;              /* ask_run_missing() */
+  int64_t left_out;                     /* ask_choice_left_out() */
+  struct ask_choice choice;             /* its texts are borrowed from the operands */
+  char namesakes[ASK_CAMPAIGN_NUMBERS]; /* of the chosen campaign */
+  /* for pairs.c alone */
+  char *axes; /* JSON: paths of what it varies */
+  bool one_point;
+  struct ask_pairs_group *groups;
+  struct difference_value *values;
+  size_t group_count, group_room, value_count, value_room;
+};
+
+struct ask_pairs {
+  const char *quantity;
+  struct ask_pairs_side side[2];
+  /* for pairs.c alone */
+  char main[ASK_GROUP_NAME]; /* holds it where the caller named none */
+  size_t at, found;          /* the next group of side 0; number of pairs */
+};
 
 struct ask_pairs_row {
   int64_t point[2];     /* number of each point in its store */
@@ -489,15 +512,8 @@ struct ask_pairs_row {
 /* quantity NULL: the main quantity of the first store (ask_quantity_main()). Else borrowed until ask_pairs_free(). */
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
                       struct ask_pairs **out, struct error *error);
-const char *ask_pairs_quantity(const struct ask_pairs *pairs);
 /* The next pair, in the order of the points of A; its texts are borrowed from `pairs`. False at the end. */
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row);
-/* ask_campaign_namesakes() of the campaign of a side (0, 1), and that campaign (NULL: none), both borrowed. */
-const char *ask_pairs_namesakes(const struct ask_pairs *pairs, int side, const char **campaign);
-/* The runs of a side (0, 1) that a person excluded, its ask_choice_left_out(), and the path of its store, borrowed. */
-int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path);
-/* ask_run_missing() of a side. */
-int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *wanted);
 /* The points without a partner: "1 of 3 points of a (strain 4 %), 7 of 9 points of b"; "": none. The caller frees
  * *text, also after an error. */
 status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error *error);

@@ -9,44 +9,24 @@
 #include "engine/grow.h"
 #include "schemas/memory.h"
 
-struct group {  /* the runs of one point */
-  char *list;   /* "path = value" of each input that a side varies, with SEPARATOR: a value may have a comma */
-  char *inputs; /* the same for readers, with ", " */
+struct ask_pairs_group { /* the runs of one point */
+  char *list;            /* "path = value" of each input that a side varies, with SEPARATOR: a value may have a comma */
+  char *inputs;          /* the same for readers, with ", " */
   char label[ASK_POOL_LABEL];
   int64_t point;
-  struct group *partner;        /* of the other side; NULL: none */
-  struct difference difference; /* from this group of the first side to its partner */
-  size_t first, count;          /* in `values` */
-  size_t runs;                  /* that have a value or, of an exponent, that count */
-  double exponent;              /* of the runs together; NaN: of another quantity */
-  const char *untold;           /* why tables for people show no exponent; NULL: they show it */
+  struct ask_pairs_group *partner; /* of the other side; NULL: none */
+  struct difference difference;    /* from this group of the first side to its partner */
+  size_t first, count;             /* in `values` */
+  size_t runs;                     /* that have a value or, of an exponent, that count */
+  double exponent;                 /* of the runs together; NaN: of another quantity */
+  const char *untold;              /* why tables for people show no exponent; NULL: they show it */
   struct ask_doubts doubts;
 };
 #define SEPARATOR '\n' /* char(10) in SQL */
 
-struct side {
-  char path[LIMITS_PATH];               /* of the store */
-  int64_t excluded;                     /* runs that a person excluded */
-  int64_t missing, wanted;              /* ask_run_missing() */
-  int64_t left_out;                     /* ask_choice_left_out() */
-  char *axes;                           /* JSON: paths of what it varies */
-  struct ask_choice choice;             /* its texts are borrowed from the operands */
-  char namesakes[ASK_CAMPAIGN_NUMBERS]; /* of the chosen campaign */
-  bool one_point;
-  struct group *groups;
-  struct difference_value *values;
-  size_t group_count, group_room, value_count, value_room;
-};
-struct ask_pairs {
-  const char *quantity;
-  char main[ASK_GROUP_NAME]; /* holds it where the caller named none */
-  struct side side[2];
-  size_t at, found; /* the next group of side 0; number of pairs */
-};
-
 /* The values of a column of the runs that count, of the newest results_version, ordered by inputs, point and seed. An
  * input that only the other side varies tells by its value which points are common. */
-static struct answer ask_values(struct store *store, const struct side side[2], const char *column,
+static struct answer ask_values(struct store *store, const struct ask_pairs_side side[2], const char *column,
                                 struct error *error) {
   return answer_to(
       store, error,
@@ -68,12 +48,12 @@ static char *readable(const char *list) {
 }
 
 /* Adds a run to its point, which is the last one or a new one. */
-static status add_run(struct side *side, const struct answer *row, struct error *error) {
+static status add_run(struct ask_pairs_side *side, const struct answer *row, struct error *error) {
   const int64_t point = answer_integer(row, 1);
   if (side->group_count == 0 || side->groups[side->group_count - 1].point != point) {
     TRY(grow_or_fail(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups, "the runs", error));
-    struct group *group = &side->groups[side->group_count++];
-    *group = (struct group){.point = point, .first = side->value_count, .exponent = NAN};
+    struct ask_pairs_group *group = &side->groups[side->group_count++];
+    *group = (struct ask_pairs_group){.point = point, .first = side->value_count, .exponent = NAN};
     group->list = strdup(side->one_point ? "" : answer_text(row, 0));
     group->inputs = group->list ? readable(group->list) : NULL;
     if (!group->inputs)
@@ -87,7 +67,7 @@ static status add_run(struct side *side, const struct answer *row, struct error 
 }
 
 static int by_point(const void *a, const void *b) {
-  const struct group *p = a, *q = b;
+  const struct ask_pairs_group *p = a, *q = b;
   return (p->point > q->point) - (p->point < q->point);
 }
 
@@ -99,7 +79,8 @@ static int by_seed(const void *a, const void *b) {
 /* Adds the contributions of a point's runs to its exponent, in the order of their seeds; none where the exponent has no
  * interval. where: SQL that chooses runs; NULL: all. */
 static status read_exponent(struct store *store, enum exponent_method method, enum estimates_window window,
-                            const char *where, struct side *side, struct group *group, struct error *error) {
+                            const char *where, struct ask_pairs_side *side, struct ask_pairs_group *group,
+                            struct error *error) {
   POINT_DATA point = {0};
   OWNED double *contribution = NULL;
   TRY(point_read_where(store, group->point, 0, where, &point, error));
@@ -118,11 +99,11 @@ static status read_exponent(struct store *store, enum exponent_method method, en
 
 /* Puts the contributions in place of the values. */
 static status read_exponents(struct store *store, enum exponent_method method, enum estimates_window window,
-                             struct side *side, struct error *error) {
+                             struct ask_pairs_side *side, struct error *error) {
   side->value_count = 0;
   for (size_t i = 0; i < side->group_count; i++) {
     struct pooled_exponent fit;
-    struct group *group = &side->groups[i];
+    struct ask_pairs_group *group = &side->groups[i];
     TRY(read_exponent(store, method, window, NULL, side, group, error));
     TRY(point_exponent(store, group->point, 0, method, window, 0.95, &fit, error));
     group->untold = pooled_exponent_untold(&fit);
@@ -135,7 +116,7 @@ static status read_exponents(struct store *store, enum exponent_method method, e
 static status read_values(struct store *const of_sides[2], struct ask_pairs *pairs, int k, struct error *error) {
   struct store *store = of_sides[k];
   const char *quantity = pairs->quantity;
-  struct side *side = &pairs->side[k];
+  struct ask_pairs_side *side = &pairs->side[k];
   char column[ASK_GROUP_NAME];
   bool exponent;
   enum exponent_method method;
@@ -154,7 +135,7 @@ static status read_values(struct store *const of_sides[2], struct ask_pairs *pai
   TRY(ask_run_missing(store, &side->missing, &side->wanted, error));
   side->left_out = ask_choice_left_out(store);
   for (size_t i = 0; i < side->group_count; i++) {
-    struct group *group = &side->groups[i];
+    struct ask_pairs_group *group = &side->groups[i];
     TRY(ask_points_label(store, of_sides[0], group->point, group->label, sizeof group->label, error));
     TRY(ask_doubts(store, &(struct ask_doubts_choice){.point = group->point},
                    exponent ? OUTCOME_NAME(mean_fragment_mass) : column, &group->doubts, error));
@@ -162,8 +143,8 @@ static status read_values(struct store *const of_sides[2], struct ask_pairs *pai
   return exponent ? read_exponents(store, method, window, side, error) : STATUS_OK;
 }
 
-static status open_side(const char *operand, struct ask_choice choice, struct side *side, struct store **store,
-                        struct error *error) {
+static status open_side(const char *operand, struct ask_choice choice, struct ask_pairs_side *side,
+                        struct store **store, struct error *error) {
   ask_choose_operand(operand, side->path, sizeof side->path, &choice);
   side->one_point = choice.point > 0;
   side->choice = choice;
@@ -179,7 +160,7 @@ static status open_side(const char *operand, struct ask_choice choice, struct si
 }
 
 /* The first group of the same inputs that has no partner yet; NULL: none. Groups are in the order of their inputs. */
-static struct group *partner_of(const struct group *group, struct side *side) {
+static struct ask_pairs_group *partner_of(const struct ask_pairs_group *group, struct ask_pairs_side *side) {
   size_t low = 0, high = side->group_count;
   while (low < high) {
     const size_t middle = low + (high - low) / 2;
@@ -194,12 +175,14 @@ static struct group *partner_of(const struct group *group, struct side *side) {
   return NULL;
 }
 
-static struct difference difference_of(const struct side side[2], const struct group *a, const struct group *b) {
+static struct difference difference_of(const struct ask_pairs_side side[2], const struct ask_pairs_group *a,
+                                       const struct ask_pairs_group *b) {
   return sample_difference(a->count, side[0].values + a->first, b->count, side[1].values + b->first, 0.95);
 }
 
 /* SQL that chooses the seeds that both groups have. NULL: no memory. */
-static char *common_seeds(const struct side side[2], const struct group *a, const struct group *b) {
+static char *common_seeds(const struct ask_pairs_side side[2], const struct ask_pairs_group *a,
+                          const struct ask_pairs_group *b) {
   const struct difference_value *first = side[0].values + a->first, *second = side[1].values + b->first;
   char *text = NULL;
   FILE *out = text_open(&text);
@@ -216,9 +199,9 @@ static char *common_seeds(const struct side side[2], const struct group *a, cons
 
 /* The exponents of the common seeds alone, where the difference is of pairs: what a run contributes depends on all runs
  * of the fit, also on those without a partner. */
-static status compare_common(struct store *const store[2], struct side side[2], const char *quantity,
-                             struct group *first, struct error *error) {
-  struct group group[2] = {*first, *first->partner};
+static status compare_common(struct store *const store[2], struct ask_pairs_side side[2], const char *quantity,
+                             struct ask_pairs_group *first, struct error *error) {
+  struct ask_pairs_group group[2] = {*first, *first->partner};
   struct difference *difference = &first->difference;
   bool exponent;
   enum exponent_method method;
@@ -241,9 +224,9 @@ static status compare_common(struct store *const store[2], struct side side[2], 
 }
 
 static status pair_groups(struct store *const store[2], struct ask_pairs *pairs, struct error *error) {
-  struct side *side = pairs->side;
+  struct ask_pairs_side *side = pairs->side;
   for (size_t i = 0; i < side[0].group_count; i++) {
-    struct group *first = &side[0].groups[i];
+    struct ask_pairs_group *first = &side[0].groups[i];
     first->partner = partner_of(first, &side[1]);
     if (!first->partner)
       continue;
@@ -253,10 +236,6 @@ static status pair_groups(struct store *const store[2], struct ask_pairs *pairs,
     TRY(compare_common(store, side, pairs->quantity, first, error));
   }
   return STATUS_OK;
-}
-
-const char *ask_pairs_quantity(const struct ask_pairs *pairs) {
-  return pairs->quantity;
 }
 
 status ask_pairs_read(const char *first, const char *second, const char *quantity, const struct ask_choice *choice,
@@ -302,9 +281,9 @@ void ask_pairs_drop(struct ask_pairs **pairs) {
 }
 
 bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
-  const struct side *a = &pairs->side[0];
+  const struct ask_pairs_side *a = &pairs->side[0];
   while (pairs->at < a->group_count) {
-    const struct group *first = &a->groups[pairs->at++], *second = first->partner;
+    const struct ask_pairs_group *first = &a->groups[pairs->at++], *second = first->partner;
     if (!second)
       continue;
     *row = (struct ask_pairs_row){{first->point, second->point},     first->inputs,
@@ -314,22 +293,6 @@ bool ask_pairs_next(struct ask_pairs *pairs, struct ask_pairs_row *row) {
     return true;
   }
   return false;
-}
-
-const char *ask_pairs_namesakes(const struct ask_pairs *pairs, int side, const char **campaign) {
-  *campaign = pairs->side[side].choice.campaign;
-  return pairs->side[side].namesakes;
-}
-
-int64_t ask_pairs_excluded(const struct ask_pairs *pairs, int side, int64_t *left_out, const char **path) {
-  *path = pairs->side[side].path;
-  *left_out = pairs->side[side].left_out;
-  return pairs->side[side].excluded;
-}
-
-int64_t ask_pairs_missing(const struct ask_pairs *pairs, int side, int64_t *wanted) {
-  *wanted = pairs->side[side].wanted;
-  return pairs->side[side].missing;
 }
 
 enum { NAMED = 5 /* most inputs with values in a message */, NAME_SETS = 20 /* most that are compared */ };
@@ -356,7 +319,7 @@ struct apart { /* the inputs that differ */
 };
 
 /* point: 0: all. */
-static status read_fixed(const struct side *side, int64_t point, struct fixed *fixed, struct error *error) {
+static status read_fixed(const struct ask_pairs_side *side, int64_t point, struct fixed *fixed, struct error *error) {
   STORE store = NULL;
   TRY(store_open_reader(side->path, &store, error));
   TRY(ask_choose(store, &side->choice, error));
@@ -450,7 +413,7 @@ static status compare_pairs(const struct ask_pairs *pairs, struct apart *apart, 
   if (pairs->found == 0)
     return compare_points(pairs, (const int64_t[]){0, 0}, apart, error);
   for (; i < pairs->side[0].group_count && sets < NAME_SETS; i++) {
-    const struct group *group = &pairs->side[0].groups[i];
+    const struct ask_pairs_group *group = &pairs->side[0].groups[i];
     size_t at = 0;
     if (!group->partner)
       continue;
@@ -477,7 +440,7 @@ status ask_pairs_apart(const struct ask_pairs *pairs, char **text, struct error 
 status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error *error) {
   FILE *out = text_open(text);
   for (int k = 0; k < 2; k++) {
-    const struct side *side = &pairs->side[k];
+    const struct ask_pairs_side *side = &pairs->side[k];
     const size_t alone = side->group_count - pairs->found;
     if (alone == 0)
       continue;
@@ -495,7 +458,7 @@ status ask_pairs_alone(const struct ask_pairs *pairs, char **text, struct error 
 
 enum { LOOKED_AT = 300 }; /* points of a side */
 
-static bool has_input(const struct side *side, const char *input, size_t length) {
+static bool has_input(const struct ask_pairs_side *side, const char *input, size_t length) {
   for (size_t i = 0; i < side->group_count && i < LOOKED_AT; i++) {
     size_t other = 0;
     for (const char *at = NULL; (at = next_input(side->groups[i].list, at, &other));)
@@ -507,7 +470,7 @@ static bool has_input(const struct side *side, const char *input, size_t length)
 
 /* Has A a value of this path that B has, too? */
 static bool is_common(const struct ask_pairs *pairs, const char *path, size_t path_length) {
-  const struct side *b = &pairs->side[1];
+  const struct ask_pairs_side *b = &pairs->side[1];
   for (size_t i = 0; i < b->group_count && i < LOOKED_AT; i++) {
     size_t length = 0;
     for (const char *input = NULL; (input = next_input(b->groups[i].list, input, &length));)
@@ -518,7 +481,7 @@ static bool is_common(const struct ask_pairs *pairs, const char *path, size_t pa
   return false;
 }
 
-static bool has_path(const struct side *side, const char *path, size_t path_length) {
+static bool has_path(const struct ask_pairs_side *side, const char *path, size_t path_length) {
   size_t length = 0;
   for (const char *input = NULL; (input = next_input(side->groups[0].list, input, &length));)
     if (strncmp(input, path, path_length) == 0 && input[path_length] == ' ')
@@ -549,7 +512,7 @@ static void write_apart(const struct ask_pairs *pairs, char *text, size_t size) 
 }
 
 status ask_pairs_end(const struct ask_pairs *pairs, struct error *error) {
-  const struct side *a = &pairs->side[0], *b = &pairs->side[1];
+  const struct ask_pairs_side *a = &pairs->side[0], *b = &pairs->side[1];
   char apart[NAMED * (FIELD_TEXT_SIZE + 88)], point[2][TEXT_WORD], word[2][TEXT_WORD];
   if (pairs->found > 0)
     return STATUS_OK;

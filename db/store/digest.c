@@ -410,17 +410,6 @@ status digest_rows_end(struct digest_rows *rows) {
   return rows->code;
 }
 
-status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error) {
-  STATEMENT update = NULL;
-  TRY(sql_prepare(db, "UPDATE main.run SET digest = ?2 WHERE run_id = ?1", &update, doing, error));
-  DIGEST_ROWS rows = digest_rows(db, DIGEST_RUNS, run_id, false, error);
-  if (digest_rows_next(&rows)) {
-    SQL_BIND(update, sql_of_integer(run_id), sql_of_bytes(rows.digest, sizeof rows.digest));
-    TRY(sql_run(update, doing, error));
-  }
-  return digest_rows_end(&rows);
-}
-
 status digest_set_fields(sqlite3 *db, int64_t run_id, const char *path, struct sql_value digest, struct error *error) {
   static const char noting[] = "noting a fields file";
   const struct digest name = digest_name("run", "fields_digest");

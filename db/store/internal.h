@@ -88,8 +88,6 @@ status digest_rows_print(sqlite3 *db, enum digest_kind kind, FILE *out, struct e
 /* Writes the path and digest (a text, or NULL) of a run's fields file. The digest of the run changes by this value
  * alone, so that damage elsewhere still shows. Within the caller's transaction. */
 status digest_set_fields(sqlite3 *db, int64_t run_id, const char *path, struct sql_value digest, struct error *error);
-/* Writes the digest of one run. Within the caller's transaction. */
-status digest_rows_fill(sqlite3 *db, int64_t run_id, struct error *error);
 
 /* ---- identities ---- */
 

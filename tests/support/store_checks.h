@@ -1,6 +1,7 @@
 /* Common parts of tests of the store: bytes of a file, one number of a query. */
 #pragma once
 
+#include "db/store/internal.h"
 #include "tests/support/check.h"
 #include "tests/support/store_fixture.h"
 
@@ -15,6 +16,16 @@ __attribute__((unused)) static char *dump(const char *path) {
   fclose(out);
   OK(store_close(store, &error));
   return text;
+}
+
+/* Gives a run the digest of its rows as they are now. */
+__attribute__((unused)) static void fill_digest(sqlite3 *db, int64_t run_id) {
+  STATEMENT update = NULL;
+  DIGEST_ROWS rows = digest_rows(db, DIGEST_RUNS, run_id, false, &error);
+  OK(sql_prepare(db, "UPDATE main.run SET digest = ?2 WHERE run_id = ?1", &update, "test", &error));
+  assert_true(digest_rows_next(&rows));
+  SQL_BIND(update, sql_of_integer(run_id), sql_of_bytes(rows.digest, sizeof rows.digest));
+  OK(sql_run(update, "test", &error));
 }
 
 /* The bytes of a store that no program has open. They are malloc'd. */

@@ -265,7 +265,7 @@ TEST(methods_of_older_stores) {
       "test", &error));
   const double runs = number(store, "SELECT max(run_id) FROM run");
   for (int64_t run = 1; run <= (int64_t)runs; run++)
-    OK(digest_rows_fill(store->db, run, &error)); /* as the program of that time computed it */
+    fill_digest(store->db, run); /* as the program of that time computed it */
   OK(digest_tables_write(store->db, &store->tables, &error));
   if (store_check(store, line, problem, &error) != STATUS_OK)
     fail_msg("%s", problem);

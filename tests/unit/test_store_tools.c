@@ -114,7 +114,7 @@ TEST(merge_takes_what_is_missing) {
       SQLITE_OK);
   sqlite3_close(other);
   store = writer(b);
-  OK(digest_rows_fill(store->db, 3, &error)); /* as if another machine had computed it with this result */
+  fill_digest(store->db, 3); /* as if another machine had computed it with this result */
   OK(store_close(store, &error));
   store = writer(a);
   OK(store_merge(store, b, &added, &differing, &error));
