@@ -271,10 +271,12 @@ CREATE TABLE convergence_limit ( -- Limit of each knob of a study, for each quan
   fit_with REAL, -- The same with the finest of the dropped levels. Off: none is dropped.
   measured_order REAL, -- p of limit + a step^p that fits best.
   measured_order_low REAL, -- Lower end of its 95 % interval, 0.5 at least.
-  measured_order_high REAL, -- Upper end of it, 2 at most.
+  measured_order_high REAL, -- Upper end of it, 3 at most.
   extrapolated REAL, -- Value at step 0: mean over the laws, by their likelihood.
   extrapolated_low REAL, -- Lower end of its 95 % interval over all laws.
   extrapolated_high REAL, -- Upper end of it.
+  one_power_low REAL, -- Lower end of the interval of the laws with one power alone: two errors against each other are left out. Off: the levels reject one power.
+  one_power_high REAL, -- Upper end of it.
   change REAL, -- Mean of the finest level less that of the next coarser one.
   change_low REAL, -- Lower end of its 95 % interval.
   change_high REAL, -- Upper end of it.
@@ -913,9 +915,13 @@ INSERT INTO column_doc VALUES ('convergence_limit', 'knob', NULL, 'What was made
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order', NULL, 'p of limit + a step^p that fits best.', 1);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_high', NULL, 'Upper end of it, 2 at most.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_high', NULL, 'Upper end of it, 3 at most.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_low', NULL, 'Lower end of its 95 % interval, 0.5 at least.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'one_power_high', NULL, 'Upper end of it.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'one_power_low', NULL, 'Lower end of the interval of the laws with one power alone: two errors against each other are left out. Off: the levels reject one power.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'quantity', NULL, 'Result, as a column of the view runs. Its unit is that of the limit.', 1);
 

@@ -164,6 +164,7 @@ void convergence_limit_fill(const struct limit_law *law, struct convergence_limi
   row->fit_with = law->fit_with;
   row->order = law->order;
   row->limit = law->limit;
+  row->one_power = law->one_power;
   row->change = law->change;
 }
 
@@ -240,10 +241,15 @@ static const struct field limit_rows[] = {
     LIMIT_AS(fit_with, fit_with, 0, .doc = "The same with the finest of the dropped levels. Off: none is dropped."),
     LIMIT_AS(measured_order, order.value, 0, .doc = "p of limit + a step^p that fits best."),
     LIMIT_AS(measured_order_low, order.low, 0, .doc = "Lower end of its 95 % interval, 0.5 at least."),
-    LIMIT_AS(measured_order_high, order.high, 0, .doc = "Upper end of it, 2 at most."),
+    LIMIT_AS(measured_order_high, order.high, 0, .doc = "Upper end of it, 3 at most."),
     LIMIT_AS(extrapolated, limit.value, -HUGE_VAL, .doc = "Value at step 0: mean over the laws, by their likelihood."),
     LIMIT_AS(extrapolated_low, limit.low, -HUGE_VAL, .doc = "Lower end of its 95 % interval over all laws."),
     LIMIT_AS(extrapolated_high, limit.high, -HUGE_VAL, .doc = "Upper end of it."),
+    LIMIT_AS(one_power_low, one_power.low, -HUGE_VAL,
+             .doc =
+                 "Lower end of the interval of the laws with one power alone: two errors against each other are left "
+                 "out. Off: the levels reject one power."),
+    LIMIT_AS(one_power_high, one_power.high, -HUGE_VAL, .doc = "Upper end of it."),
     LIMIT_AS(change, change.value, -HUGE_VAL, .doc = "Mean of the finest level less that of the next coarser one."),
     LIMIT_AS(change_low, change.low, -HUGE_VAL, .doc = "Lower end of its 95 % interval."),
     LIMIT_AS(change_high, change.high, -HUGE_VAL, .doc = "Upper end of it."),

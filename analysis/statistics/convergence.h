@@ -37,7 +37,7 @@
  * (tests/verification/limits.md). */
 
 #define LIMIT_ORDER_LEAST   0.5
-#define LIMIT_ORDER_MOST    2.0
+#define LIMIT_ORDER_MOST    3.0 /* what counts single particles changes by their mass, s^3 */
 #define LIMIT_COST_OF_LEVEL 3.0
 #define LIMIT_COST_OF_TERM  4.0
 enum { LIMIT_LEVELS = 12, LIMIT_FEWEST_LEVELS = 3, LIMIT_FEWEST_SEEDS = 3 };
@@ -73,6 +73,7 @@ struct limit_law {
   double fit_with;          /* the same with one of the dropped levels; NaN: none is dropped */
   struct limit_range order; /* the range that the levels do not reject */
   struct limit_range limit; /* with the interval of the given confidence, as all others */
+  struct limit_range one_power; /* the limit by the laws of one power alone; NaN: the levels reject them */
   struct limit_range
       distance[LIMIT_LEVELS]; /* mean of the level less the limit, by the law; a dropped level: measured */
   struct limit_range change;  /* of the mean from the next to finest level to the finest one */
@@ -154,7 +155,7 @@ struct convergence_limit_row { /* one knob, for one quantity: struct limit_law *
   int verdict; /* enum limit_verdict */
   int64_t dropped;
   double fit, fit_with;
-  struct limit_range order, limit, change;
+  struct limit_range order, limit, one_power, change;
 };
 extern const struct field_table convergence_limit_table;
 

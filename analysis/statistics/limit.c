@@ -11,7 +11,7 @@ enum {
   DRAWS = 64,    /* of the noise */
   BURN_IN = 100, /* sweeps before the first draw */
   THIN = 10,     /* sweeps between draws */
-  ORDERS = 13,   /* values of p in a scan */
+  ORDERS = 21,   /* values of p in a scan: 1/8 apart in the first one */
   SCANS = 6,     /* each scan is of the orders that the one before did not reject, with one more on each side */
   TERMS = 3,     /* limit, and one or two powers of the step */
   PAIRS = 4,     /* laws with two powers */
@@ -397,14 +397,15 @@ static void extend(const double *mean, const double *deviation, const double *we
   *end = share < 0.5 ? fmin(*end, found) : fmax(*end, found);
 }
 
-static struct limit_range range_of(const struct work *work, const struct quantity *q, double rejected) {
+/* terms: of the laws that count, at most. An empty range (low above high): none of them. */
+static struct limit_range range_of(const struct work *work, size_t terms, const struct quantity *q, double rejected) {
   struct limit_range range = {0, HUGE_VAL, -HUGE_VAL};
   double sum = 0;
   for (size_t i = 0; i < work->count; i++) {
     const struct fit *fit = &work->fits[i];
     double mean[DRAWS], deviation[DRAWS];
     const double deviance = fit->deviance + (q->limit != 0 && !(q->step > 0) ? fit->cost : 0);
-    if (deviance >= rejected)
+    if (deviance >= rejected || fit->terms > terms)
       continue;
     if (q->level && (*q->level < fit->dropped || *q->level < q->dropped))
       measure(work, fit, *q->level, mean, deviation);
@@ -539,24 +540,28 @@ static void find_ranges(const struct limit_ladder *ladder, const struct work *wo
                         struct limit_law *law, size_t count, struct limit_point *points) {
   const struct data *data = &work->data;
   find_orders(work, rejected, &law->order);
-  law->limit = range_of(work, &(struct quantity){.limit = 1}, rejected);
+  law->limit = range_of(work, TERMS, &(struct quantity){.limit = 1}, rejected);
+  law->one_power = range_of(work, TERMS - 1, &(struct quantity){.limit = 1}, rejected);
   cut(ladder->least, ladder->most, &law->limit);
+  cut(ladder->least, ladder->most, &law->one_power);
+  if (law->one_power.low > law->one_power.high)
+    law->one_power = nothing;
   for (size_t l = 0; l < data->levels; l++) {
     const struct quantity distance = {.step = data->step[l], .level = &l, .dropped = law->dropped};
-    law->distance[l] = range_of(work, &distance, rejected);
+    law->distance[l] = range_of(work, TERMS, &distance, rejected);
     cut_distance(ladder, &law->limit, data->mean[l], &law->distance[l]);
   }
   for (size_t i = 0; i < count; i++) {
     const double step = points[i].step, own = 1 / (double)data->seeds;
-    points[i].mean = range_of(work, &(struct quantity){.limit = 1, .step = step}, rejected);
-    points[i].sample = range_of(work, &(struct quantity){.limit = 1, .step = step, .noise = own}, rejected);
+    points[i].mean = range_of(work, TERMS, &(struct quantity){.limit = 1, .step = step}, rejected);
+    points[i].sample = range_of(work, TERMS, &(struct quantity){.limit = 1, .step = step, .noise = own}, rejected);
     size_t coarser = 0; /* the level before the point: where a law leaves it out, its distance is that of the point */
     while (coarser + 1 < data->levels && data->step[coarser + 1] >= step)
       coarser++;
     const struct quantity distance = {.step = step,
                                       .level = data->step[coarser] >= step ? &coarser : NULL,
                                       .dropped = law->dropped};
-    points[i].distance = range_of(work, &distance, rejected);
+    points[i].distance = range_of(work, TERMS, &distance, rejected);
     cut(ladder->least, ladder->most, &points[i].mean);
     cut(ladder->least, ladder->most, &points[i].sample);
     cut_distance(ladder, &law->limit, points[i].mean.value, &points[i].distance);
@@ -573,7 +578,7 @@ static bool has_steps(const struct data *data) {
 bool limit_infer(const struct limit_ladder *ladder, double confidence, struct limit_law *law, size_t count,
                  struct limit_point *points) {
   const double rejected = pow(gsl_cdf_ugaussian_Pinv(0.5 + confidence / 2), 2);
-  *law = (struct limit_law){LIMIT_TOO_FEW, 0, NOTHING, NOTHING, nothing, nothing, {nothing}, nothing};
+  *law = (struct limit_law){LIMIT_TOO_FEW, 0, NOTHING, NOTHING, nothing, nothing, nothing, {nothing}, nothing};
   for (size_t l = 0; l < LIMIT_LEVELS; l++)
     law->distance[l] = nothing;
   for (size_t i = 0; i < count; i++)

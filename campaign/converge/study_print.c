@@ -304,6 +304,11 @@ static void print_seen(const struct study_ladder *ladder, const struct study_fou
   fprintf(out, "limit %.5g (%.5g to %.5g, seeds included), mean over laws of order %.2g to %.2g (best: %.2g); ",
           limit->limit.value, limit->limit.low, limit->limit.high, limit->order.low, limit->order.high,
           limit->order.value);
+  if (limit->limit.high - limit->limit.low > 2 * (limit->one_power.high - limit->one_power.low))
+    fprintf(out,
+            "%.5g to %.5g by the laws of one power alone: the levels do not exclude that two errors cancel here, and "
+            "more seeds or more levels may; ",
+            limit->one_power.low, limit->one_power.high);
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].base && found->rows[l].resolution > 0 && !found->rows[l].open)
       fprintf(out, "%s * is at most %s from its limit, equal seeds compared; ",
@@ -383,7 +388,7 @@ static status print_limit(const struct printing *printing, const struct study_la
   else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING) {
     print_change(knob, found, out);
     fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
-    fputs(" the three finest levels do not follow limit + a step^p with p from 0.5 to 2", out);
+    fputs(" the three finest levels do not follow limit + a step^p with p from 0.5 to 3", out);
     if (!seeds_are_equal(1, found))
       fprintf(out, " (if they did, chance would put them this far off in %s%s of studies)",
               limit->fit < 1e-5 ? "less than " : "", text_percent(fmax(limit->fit, 1e-5), (char[TEXT_PERCENT]){0}));
