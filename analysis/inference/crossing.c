@@ -19,7 +19,7 @@ static const double PLATEAU = 0.2, PLATEAU_RANGE = 0.03; /* a plateau is wider, 
 enum { PLATEAU_RUNS = 60 };
 static const double CHECKED = 0.25;  /* an interval that is narrower is checked by the places outside */
 static const double OTHER_SIDE = 2;  /* standard errors of a place on the other side, which is looked at again */
-enum { ALONE = 3 };                  /* runs of a place whose own scatter counts there, too */
+enum { ALONE = CROSSING_RUNS };      /* runs of a place whose own scatter alone counts before there is a crossing */
 static const double SEVERAL = 0.998; /* confidence of each part of a response that crosses several times */
 
 const char *const crossing_kind_names[] = {"crossing", "above", "below", "several", "plateau", "open", NULL};
@@ -32,7 +32,6 @@ struct place { /* the runs at one x */
   bool first;      /* of a block of the curve */
   double variance; /* of one run */
   double pure;     /* the same from the scatter within places alone */
-  double own;      /* the same from the scatter of this place */
   double weight;   /* n / variance, with the largest variance of the neighbourhood */
 };
 
@@ -156,7 +155,6 @@ static void weigh(struct response *response) {
   for (size_t i = 0; i < count; i++) {
     place[i].variance = variance_at(response, i, false) + rounding;
     place[i].pure = variance_at(response, i, true) + rounding;
-    place[i].own = place[i].squares / fmax(place[i].n - 1, 1) + rounding;
   }
   for (size_t i = 0; i < count; i++) {
     double variance = 0;
@@ -293,33 +291,68 @@ static bool is_above(const struct response *response) {
   return all.sum > 0;
 }
 
-/* The mean of a place in standard errors by the scatter of its runs alone, so that OTHER_SIDE is as sure as the parts
- * of a response that crosses several times. Where nothing breaks, all runs are equal, and the variance that neighbours
- * share is far too large. */
-static double alone(const struct place *place) {
-  if (place->n < ALONE)
-    return 0;
-  return place->mean * sqrt(place->n / place->own) * OTHER_SIDE / gsl_cdf_tdist_Pinv((1 + SEVERAL) / 2, place->n - 1);
+/* The mean of the places from `first` to `last` in standard errors, by the scatter of their runs alone: the variance
+ * that neighbours share is far too large where nothing breaks and all runs are equal. But equal is not sure: n runs
+ * miss what a share of about 1/n of all runs does, so `unseen` runs more count, with the variance that neighbours
+ * share. */
+static double alone(const struct response *response, size_t first, size_t last, double unseen) {
+  double n = 0, mean = 0, squares = 0, shared = 0;
+  for (size_t i = first; i <= last; i++) {
+    const struct place *place = &response->place[i];
+    const double deviation = place->mean - mean, before = n;
+    n += place->n;
+    mean += deviation * place->n / n;
+    squares += place->squares + deviation * deviation * before * place->n / n;
+    shared = fmax(shared, place->pure);
+  }
+  if (is_share(response))
+    return mean * sqrt(n / (response->share * (1 - response->share)));
+  const double freedom = fmax(n - 1 + unseen, 1), tail = gsl_cdf_ugaussian_P(OTHER_SIDE);
+  return mean * sqrt(n * freedom / (squares + fmax(unseen, 1e-9) * shared)) * OTHER_SIDE /
+         gsl_cdf_tdist_Pinv(tail, freedom);
 }
 
-/* The place that is farthest from where the answer has it, in standard errors: on the wrong side of the crossing, or of
+/* An end of the bracket whose runs lie on the wrong side of the crossing: those at the end, with as many places behind
+ * it as show it best, up to the interval. Returns the standard errors. */
+static double find_other_end(const struct response *response, const struct crossing *out, size_t *place) {
+  const size_t count = response->count;
+  double most = 0;
+  for (int end = 0; end <= 1; end++) {
+    const size_t from = end ? count - 1 : 0;
+    const double side = (end ? 1 : -1) * (out->rising ? 1 : -1);
+    for (size_t k = 0; k < count && side * response->place[from].mean < 0; k++) {
+      const size_t to = end ? from - k : k;
+      if (end ? response->place[to].x < out->high : response->place[to].x > out->low)
+        break;
+      const double z = -side * alone(response, end ? to : from, end ? from : to, 1);
+      if (z > most) {
+        most = z;
+        *place = from;
+      }
+    }
+  }
+  return most;
+}
+
+/* The place that is farthest from where the answer has it, in standard errors: on the wrong side of a crossing, or of
  * the level when nothing crosses. False: there is none. */
 static bool find_other_side(const struct response *response, const struct crossing *out, size_t *place) {
-  double most = 0;
-  for (size_t i = 0; i < response->count; i++) {
+  const bool none = out->kind == CROSSING_ABOVE || out->kind == CROSSING_BELOW, found = out->kind == CROSSING_FOUND;
+  double most = none ? 0 : find_other_end(response, out, place);
+  for (size_t i = 0; i < response->count && (!found || out->high - out->low < CHECKED); i++) {
     const double x = response->place[i].x, after = x >= out->high ? 1 : x <= out->low ? -1 : 0;
     const double side = out->kind == CROSSING_ABOVE   ? 1
                         : out->kind == CROSSING_BELOW ? -1
                                                       : after * (out->rising ? 1 : -1);
     struct stretch pooled = {0};
-    const double of_place = is_share(response) ? 0 : -side * alone(&response->place[i]);
-    const double z = fmax(-side * add_place(response, i, &pooled), of_place);
+    double z = -side * add_place(response, i, &pooled);
+    if (!found && response->place[i].n >= ALONE)
+      z = fmax(z, -side * alone(response, i, i, 0));
     if (z > most) {
       most = z;
       *place = i;
     }
   }
-  const bool none = out->kind == CROSSING_ABOVE || out->kind == CROSSING_BELOW;
   return most > (is_share(response) && none ? 0 : OTHER_SIDE);
 }
 
@@ -335,7 +368,7 @@ static void doubt(const struct response *response, struct crossing *out) {
     out->next[k] = place[i].x;
   out->next[0] = i > 0 ? (place[i - 1].x + place[i].x) / 2 : place[i].x;
   out->next[CROSSING_PLACES - 1] = i + 1 < response->count ? (place[i].x + place[i + 1].x) / 2 : place[i].x;
-  if (out->kind == CROSSING_FOUND)
+  if (out->kind != CROSSING_ABOVE && out->kind != CROSSING_BELOW)
     return;
   out->kind = CROSSING_OPEN;
   out->low = -BEYOND;
@@ -353,7 +386,7 @@ static void tell_kind(const struct response *response, struct crossing *out) {
     out->kind = CROSSING_PLATEAU;
   else
     out->kind = out->low < 0 || out->high > 1 ? CROSSING_OPEN : CROSSING_FOUND;
-  if (out->kind == CROSSING_FOUND ? out->high - out->low < CHECKED : out->parts < 2 && out->kind != CROSSING_PLATEAU)
+  if (out->kind != CROSSING_SEVERAL && out->kind != CROSSING_PLATEAU)
     doubt(response, out);
 }
 

@@ -66,6 +66,17 @@ static void write_subject(const struct find *find, char *text, size_t size) {
     snprintf(text, size, "the share of runs with %s above %s\n%g", row->path, level, find->share);
 }
 
+static void write_contradiction(const struct find *find, char text[SENTENCE]) {
+  const struct crossing *found = &find->found;
+  char at[FIND_TEXT];
+  if (found->contradicted && found->kind == CROSSING_OPEN && found->low < 0 && found->high > 1)
+    text_append(text, SENTENCE, " The runs at %s lie on the other side than most.",
+                show(find, found->contradiction, at));
+  else if (found->contradicted)
+    text_append(text, SENTENCE, " But the runs at %s lie on the other side: there may be another crossing.",
+                show(find, found->contradiction, at));
+}
+
 static void write_sentence(const struct find *find, char text[SENTENCE]) {
   const struct crossing *found = &find->found;
   char subject[FIELD_TEXT_SIZE + 3 * FIND_TEXT], low[FIND_TEXT], high[FIND_TEXT], at[FIND_TEXT], mark[UNCERTAINTY_TEXT];
@@ -84,9 +95,7 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
     text_append(text, SENTENCE, "%s %s through %s at %s = %s%s (95 %% interval %s to %s).", subject,
                 found->rising ? "rises" : "falls", level, input,
                 find_show_within(find, found->at, found->low, found->high, at), mark, low, high);
-    if (found->contradicted)
-      text_append(text, SENTENCE, " But the runs at %s lie on the other side: there may be another crossing.",
-                  show(find, found->contradiction, low));
+    write_contradiction(find, text);
     break;
   case CROSSING_ABOVE:
   case CROSSING_BELOW:
@@ -121,23 +130,9 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
                 : found->low < 0                  ? "at %s below %s, or not in the bracket."
                                                   : "at %s above %s, or not in the bracket.",
                 input, found->low < 0 ? high : low);
-    if (found->contradicted)
-      text_append(text, SENTENCE, " The runs at %s lie on the other side than most.",
-                  show(find, found->contradiction, low));
+    write_contradiction(find, text);
     break;
   }
-}
-
-/* An interval that the bracket cuts: the input may go farther, and the crossing be there. */
-static void write_end(const struct find *find, char text[SENTENCE]) {
-  const bool one = find->found.kind == CROSSING_FOUND;
-  const bool low = one && find->found.low <= 0 && find->from > find->input->minimum;
-  const bool high = one && find->found.high >= 1 && find->to < find->input->maximum;
-  if (low || high)
-    text_append(text, SENTENCE, " The interval ends where the bracket does, and the crossing may be beyond it: %s.",
-                !high  ? "a lower --from tells"
-                : !low ? "a higher --to tells"
-                       : "a lower --from and a higher --to tell");
 }
 
 /* Is the answer that nothing crosses? */
@@ -191,13 +186,30 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
   return STATUS_OK;
 }
 
-static status print_bins(const struct find *find, bool quiet, struct error *error) {
-  struct bin bins[2 * BINS + 2];
-  size_t count;
+/* Does the interval of the row's mean hold the level? Of a share no row has one. */
+static bool may_cross(const struct find *find, const struct bin *bin) {
+  return !isnan(find->share) || (bin->mean.low <= find->level && find->level <= bin->mean.high);
+}
+
+/* An interval that the bracket cuts: the input may go farther, and the crossing be there. Not where the rows of the
+ * table lie on one side of the level at this end, beyond their errors. */
+static void write_end(const struct find *find, const struct bin *bins, size_t count, char text[SENTENCE]) {
+  const bool one = find->found.kind == CROSSING_FOUND && !find->found.contradicted;
+  const bool low = one && find->found.low <= 0 && find->from > find->input->minimum && may_cross(find, &bins[0]);
+  const bool high = one && find->found.high >= 1 && find->to < find->input->maximum &&
+                    may_cross(find, &bins[count - 1]);
+  if (low || high)
+    text_append(text, SENTENCE, " The interval ends where the bracket does, and the crossing may be beyond it: %s.",
+                !high  ? "a lower --from tells"
+                : !low ? "a higher --to tells"
+                       : "a lower --from and a higher --to tell");
+}
+
+static status print_bins(const struct find *find, const struct bin *bins, size_t count, bool quiet,
+                         struct error *error) {
   bool any_weak = false, all_one = false, holds = false;
   const struct sample_range range = sample_range(find->quantity.row);
   char text[FIND_TEXT], mean[2 * UNCERTAINTY_TEXT], from[FIELD_TEXT_SIZE + 8], of[FIELD_TEXT_SIZE + 40], above[128];
-  TRY(make_bins(find, bins, &count, error));
   show_level(find, text);
   snprintf(from, sizeof from, "%s from", find->input->path);
   const struct field real = find_level_row(find);
@@ -353,11 +365,11 @@ static void write_more(const struct find *find) {
       before = &find->width[i];
   const size_t needed = runs_needed(find, before);
   const bool beyond = needed > FIND_MOST_RUNS || find->most >= FIND_MOST_RUNS;
+  const char *why = width > find_widest(find) ? "The interval is wider than asked" : "One crossing is not sure";
   if (find->runs < find->most)
-    text_append(text, SENTENCE, "The interval is wider than asked, and no round fits into the rest of the %zu runs",
-                find->most);
+    text_append(text, SENTENCE, "%s, and no round fits into the rest of the %zu runs", why, find->most);
   else
-    text_append(text, SENTENCE, "The interval is wider than asked, and the runs are used up");
+    text_append(text, SENTENCE, "%s, and the runs are used up", why);
   text_append(text, SENTENCE, beyond ? ". A search may have at most %d runs" : ": a larger --max-runs goes on.",
               FIND_MOST_RUNS);
   if (needed > FIND_MOST_RUNS)
@@ -393,14 +405,17 @@ static status tell_others(const struct find *find, struct error *error) {
 
 status find_print(const struct find *find, enum table_format format, bool quiet, struct error *error) {
   char text[SENTENCE];
+  struct bin bins[2 * BINS + 2];
+  size_t count;
   if (!table_for_people(format))
     return print_rows(find, format, error);
+  TRY(make_bins(find, bins, &count, error));
   write_sentence(find, text);
-  write_end(find, text);
+  write_end(find, bins, count, text);
   words_print(stdout, "", "%s", text);
   if (!find->narrow)
     write_more(find);
-  TRY(print_bins(find, quiet, error));
+  TRY(print_bins(find, bins, count, quiet, error));
   fflush(stdout);
   uncertainty_doubts(&find->doubts, stderr);
   if (quiet)

@@ -49,15 +49,7 @@ status launch_series(struct launch *launch, const struct series *series, bool fo
   if (code == STATUS_OK || code == STATUS_STOPPED)
     launch_tell_runs(store, summary.runs_done, found ? summary.runs_reused : -1, summary.cpu_s,
                      clock_s() - launch->begin_s);
-  int64_t missing = 0, wanted = 0;
-  if (summary.runs_failed && answers &&
-      ask_choose(answers, &(struct ask_choice){.session = summary.session_id}, NULL) == STATUS_OK &&
-      ask_run_missing(answers, &missing, &wanted, NULL) == STATUS_OK && missing)
-    uncertainty_missing(missing, wanted, store);
-  else if (summary.runs_failed) { /* such as runs beyond a prefix, which no mean needs */
-    char word[TEXT_WORD];
-    fprintf(stderr, "some runs failed: clast query %s --named failures\n", text_word(store, word));
-  }
+  uncertainty_missing(summary.runs_failed, 0, store);
   return code;
 }
 

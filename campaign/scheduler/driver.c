@@ -38,6 +38,7 @@ struct driver {
                             when they are finished */
   size_t point_count;
   uint64_t expanded; /* design points taken */
+  uint64_t reason;   /* hash of why the last point that could not be run could not */
   struct seen *seen; /* ids of the points met; below 0: hashes of names */
   struct point_cost_model cost;
   struct sample_moments moments;    /* of the main quantity */
@@ -334,8 +335,15 @@ static status expand(struct driver *driver, bool *more, struct error *error) {
     return status_fail(error, STATUS_MEMORY, "%s", why.message);
   if (!scene) {
     char text[sizeof why.message + 80];
-    snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
-             why.message);
+    const char *at = strstr(why.message, " (at "); /* the point's own values */
+    const uint64_t reason = text_hash(0, why.message, at ? (size_t)(at - why.message) : strlen(why.message));
+    if (at && reason == driver->reason)
+      snprintf(text, sizeof text, "point %llu of the design cannot be run for the same reason%s",
+               (unsigned long long)driver->expanded, at);
+    else
+      snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
+               why.message);
+    driver->reason = reason;
     if (++driver->summary.points_invalid <= 5)
       scheduler_note(driver->scheduler, text);
     return STATUS_OK;

@@ -135,13 +135,14 @@ void uncertainty_excluded(int64_t count, const char *store) {
 }
 
 void uncertainty_missing(int64_t missing, int64_t wanted, const char *store) {
-  char word[TEXT_WORD];
+  char word[TEXT_WORD], of[32] = "";
+  if (wanted > 0)
+    snprintf(of, sizeof of, " of %" PRId64, wanted);
   if (missing > 0)
     words_print(stderr, "",
-                "clast: %" PRId64 " of %" PRId64
-                " runs gave no result (`clast query %s --named failures`): if they fail "
-                "for a reason that depends on the result, means are biased",
-                missing, wanted, text_word(store, word));
+                "clast: %" PRId64 "%s run%s gave no result (`clast query %s --named failures`): if they fail for a "
+                "reason that depends on the result, means are biased",
+                missing, of, missing == 1 && !*of ? "" : "s", text_word(store, word));
 }
 
 void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path) {

@@ -115,6 +115,11 @@ prints "kg/m"
 # An interval that the bracket cuts is told.
 expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --from 2.5% --to 6% --max-runs 28
 tr '\n' ' ' <out | grep -qF "The interval ends where the bracket does, and the crossing may be beyond it: a lower --from tells." || fail "the cut interval: $(cat out)"
+# Where the runs at an end lie on the other side, there may be another crossing, and not beyond the bracket.
+sed 's/^vary.*/vary: {charge.energy: [0.3 kJ\/m, 30 kJ\/m]}/; s/^set.*/set: {body.diameter: 10 cm, threshold.angle: 4 deg}/; s/disc.db/peak.db/' disc.yaml >peak.yaml
+expect 0 "$clast" find peak.yaml -Q second_fraction --level '5 %' --max-runs 20 --quiet
+tr '\n' ' ' <out | grep -qE "crosses 0.05 at charge.energy above [0-9.]+ kJ/m, .* But the runs at 0.3 kJ/m lie on the other side: there may be another crossing\." || fail "the other end: $(cat out)"
+grep -q "tells" out && fail "beyond the bracket is nothing to be seen"
 # The last round takes what is left, to less than a run a place.
 expect 0 "$clast" find disc.yaml --level 0.5 --within 0.0001 --max-runs 47 --store used.db --quiet
 same "$(number used.db "select count(*) between 44 and 47 from run")" 1 "runs of 47"
@@ -185,6 +190,10 @@ printf '%s\n' 'name: dusty' 'scene: disruption@draft' 'set: {fidelity.particles:
 expect 65 "$clast" find dusty.yaml --level 0.4 -Q dust_fraction --max-runs 20 --quiet
 says "withheld, 20 of 20 runs: dust: "; says "runs with a result are at 0 places"; one_error
 
+# A reason that five values share is said once.
+expect 65 "$clast" find dusty.yaml --level 0.4 --max-runs 20 --set specific_energy='1 kJ/kg' --input target.material.porosity.fraction --from 10% --to 40%
+same "$(grep -c 'has no effect' err)" 1 "a reason that five values share"
+says "point 5 of the design cannot be run for the same reason (at target.material.porosity.fraction 0.4)"
 # Wrong command lines.
 for wrong in "--share 0.5|--level is missing" "--level 1.5|at most 1, got 1.5" "--level nine|expected a number" "--level 0.5 -Q largest_friction|largest_fraction" "--level 3kg -Q mean_fragment_mass|expected a mass per length" \
   "--level 0.5 --input contact.law|not a number" "--level 0.5 --input charge.energy|no range of charge.energy" \
@@ -213,4 +222,4 @@ expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg 
 prints "2 deg, 3 deg, 4 deg, 5 deg, 6 deg"
 expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --max-runs 20 --store set.db
 tr '\n' ' ' <err | grep -qE "'threshold.angle=[0-9.]+ deg'" || fail "the study advised is in other units: $(cat err)"
-done_after 62
+done_after 65

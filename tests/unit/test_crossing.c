@@ -188,6 +188,41 @@ TEST(a_place_of_equal_runs_keeps_its_own_scatter) {
   }
 }
 
+/* Low, high, low, with less scatter at both ends. The interval of the rise is wide; the place at the other end lies
+ * below the level by 1.9, and the error of its mean is 0.5 / sqrt(3) by its own runs. */
+TEST(an_end_on_the_wrong_side_is_told_of_a_wide_interval) {
+  const double places[9] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1};
+  const double means[9] = {-1.8, -1.8, -1.8, -1.8, 3, 2.4, 1.5, 1, -1.9};
+  double x[36], y[36];
+  for (int mirrored = 0; mirrored <= 1; mirrored++) {
+    for (int i = 0; i < 36; i++) {
+      const int place = i / 4;
+      x[i] = mirrored ? 1 - places[place] : places[place];
+      y[i] = means[place] + (i % 2 ? 1 : -1) * (place > 7 ? 0.5 : place > 3 ? 1.5 : 0.1);
+    }
+    const struct crossing found = find(36, x, y, 0, NAN);
+    assert_int_equal(found.kind, CROSSING_FOUND);
+    assert_true(found.rising == !mirrored && found.high - found.low > 0.25);
+    assert_true(found.contradicted && found.contradiction == !mirrored);
+    assert_true(!crossing_is_answer(&found, 1));
+  }
+}
+
+/* Bodies stay whole up to 0.4 (0.6 above the level); beyond, half of them do, and the others lie 0.5 to 3.5 below it.
+ * All of three runs at a place are whole one time in eight, so such a place proves nothing and gets no more runs. */
+TEST(few_equal_runs_do_not_contradict) {
+  double x[24 * 21], y[24 * 21];
+  size_t n = 0;
+  for (int place = 0; place <= 20; place++)
+    for (int i = 0; i < (place == 16 ? 3 : 24); i++) {
+      x[n] = place / 20.0;
+      y[n++] = place < 9 || place == 16 || i % 2 ? 0.6 : -0.5 - 0.5 * (i % 8);
+    }
+  const struct crossing found = find(n, x, y, 0, NAN);
+  assert_int_equal(found.kind, CROSSING_FOUND);
+  assert_true(!found.rising && !found.contradicted);
+}
+
 TEST(rounds_grow_by_a_sixth) {
   const struct crossing found = {.next = {0.1, 0.2, 0.3, 0.4}};
   double place[CROSSING_PLACES];

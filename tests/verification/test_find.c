@@ -61,12 +61,16 @@ static double little_above(double u, double width) {
 static double bump(double u, double width) {
   return 0.5 - fabs(u) / width;
 }
+/* Low, then a jump up and a slow fall: two crossings 0.4 apart. */
+static double low_high_low(double u, double width) {
+  return u < -0.3 ? -0.1 : 0.4 * exp(-(u + 0.3) / width) - 0.1;
+}
 static double plateau(double u, double width) {
   return fabs(u) < width ? 0 : copysign(fabs(u) - width, u);
 }
 
 /* A run about this mean. */
-enum noise { NORMAL, SKEWED, LESS, MORE, HEAVY, MODES, QUIET };
+enum noise { NORMAL, SKEWED, LESS, MORE, HEAVY, MODES, QUIET, WITH_HEIGHT };
 
 struct law {
   const char *name;
@@ -129,6 +133,8 @@ static const struct law no_single_crossing[] = {
     {"above by 0.1, 20 %", little_above, 0.2, NORMAL, 0.2, false},
     {"two crossings 0.2 apart, 2 %", bump, 0.2, NORMAL, 0.02, false},
     {"two crossings 0.6 apart, 20 %", bump, 0.6, NORMAL, 0.2, false},
+    {"low, high, low, 60 % of the height", low_high_low, 0.3, WITH_HEIGHT, 0.6, false},
+    {"low, high, low, 100 % of the height", low_high_low, 0.3, WITH_HEIGHT, 1, false},
     {"plateau 0.3 wide, 0.2 %", plateau, 0.15, NORMAL, 0.002, false},
     {"plateau 0.3 wide, 2 %", plateau, 0.15, NORMAL, 0.02, false},
     {"plateau 0.6 wide, 10 %", plateau, 0.3, NORMAL, 0.1, false},
@@ -161,6 +167,7 @@ static void run_at(struct case_of_law *c, double x) {
   case MORE: y += law->scatter * (0.2 + 2 * exp(-u * u / 0.01)) * normal(c); break;
   case HEAVY: y += law->scatter * normal(c) / sqrt(-log(uniform(c))); break; /* Student, 2 degrees of freedom */
   case QUIET: y += u < 0 ? 0 : law->scatter * (fabs(mean) + 0.1) * normal(c); break;
+  case WITH_HEIGHT: y += law->scatter * (mean + 0.15) * normal(c); break;
   case MODES: y = (uniform(c) < 0.5 + mean ? 0.5 : -0.5) + law->scatter * normal(c); break;
   }
   c->x[c->runs] = x;
@@ -171,7 +178,7 @@ static void begin(struct case_of_law *c, const struct law *law, uint64_t seed) {
   c->law = law;
   c->seed = seed;
   c->draws = 0;
-  c->crossing = law->mean == bump ? 0.4 + 0.2 * uniform(c) : 0.15 + 0.7 * uniform(c);
+  c->crossing = law->mean == bump || law->mean == low_high_low ? 0.4 + 0.2 * uniform(c) : 0.15 + 0.7 * uniform(c);
   c->sign = uniform(c) < 0.5 ? 1 : -1;
   c->runs = 0;
 }
