@@ -68,10 +68,12 @@ struct engine_materials {
   const char *(*text)(const char *name); /* the document, or NULL */
   /* Into an object of `values`. STATUS_MISSING with the nearest name; STATUS_CONTENT: the document has a fault. */
   status (*load)(const char *name, void *material, struct error *error);
-  /* The same from a file. *text is its content (malloc'd, owned by the caller). Also the errors of document_open. */
-  status (*load_file)(const char *path, void *material, char **text, struct error *error);
-  /* The values that the text of a file does not give, and that scenes need beside the required ones; "" none. */
-  void (*also_needed)(const char *text, char *list, size_t size);
+  /* A scene that judges a material's file: its document, the material's section, and an input with the value that lets
+   * the scene need fewer values; and what such a scene is ("a body without strength"). */
+  struct engine_trial {
+    const char *scene, *section, *input, *value, *what;
+  } trial;
+  const char *together[2]; /* paths of two values that one measurement gives, and that mean little alone */
   /* Where a value of a named material comes from. STATUS_MISSING: the document does not say. */
   status (*source)(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);
 };

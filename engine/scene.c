@@ -103,6 +103,37 @@ static status take_like(document_node *root, document_node *node, const struct e
                                                : status_fail(error, STATUS_MEMORY, "no memory for a material");
 }
 
+/* Is it a value, or a section of values? */
+static bool is_value(const struct engine_materials *materials, const char *path) {
+  const size_t length = strlen(path);
+  for (size_t i = 0; i < materials->values->count; i++) {
+    const char *known = materials->values->rows[i].path;
+    if (strncmp(known, path, length) == 0 && (known[length] == '.' || known[length] == '\0'))
+      return true;
+  }
+  return false;
+}
+
+/* `sources`: a text for each value or section. */
+static bool check_sources(document_node *sources, const struct engine_materials *materials) {
+  bool good = !sources || document_kind(sources) == DOCUMENT_MAPPING;
+  if (!good)
+    document_report(sources, "sources",
+                    "expected a source for each value, e.g. {density: weighed, weibull: our tests}");
+  for (size_t i = 0; sources && i < document_count(sources); i++) {
+    const char *key = NULL;
+    document_node *node = document_item(sources, i, &key);
+    const bool known = key && is_value(materials, key);
+    good = good && known && document_scalar(node);
+    if (!known)
+      document_report(node, "sources", "'%.60s' is no value of a material; `clast explain target.material` lists them",
+                      key ? key : "");
+    else if (!document_scalar(node))
+      document_report(node, "sources", "expected a text that says where the value comes from");
+  }
+  return good;
+}
+
 bool scene_material_complete(document_node *root, const struct engine_materials *materials) {
   document_node *like = document_key(root, "like");
   struct error error;
@@ -114,7 +145,7 @@ bool scene_material_complete(document_node *root, const struct engine_materials 
       document_report(document_key(root, *word), NULL, "'%s' is no value of a material: %s", *word, materials->instead);
       return false;
     }
-  return good;
+  return check_sources(document_key(root, "sources"), materials) && good;
 }
 
 /* What the input `name` gets: the file's own name, after the rock's, "weak sandstone - rock.yaml", if that is another
@@ -130,7 +161,8 @@ static void own_name(const char *file, struct document *document, const struct e
                !(strlen(rock) == stem && strncmp(rock, base, stem) == 0);
   for (const char *c = rock; plain && *c; c++)
     plain = *c != '/' && (unsigned char)*c >= ' ' && *c != 127;
-  snprintf(name, FIELD_TEXT_SIZE, "%s%s%s", plain ? rock : "", plain ? " - " : "", base);
+  snprintf(name, FIELD_TEXT_SIZE, "%s%s%s%s", plain ? rock : "", plain ? " - " : "", base,
+           file_name_ends(base) ? "" : ".yaml"); /* that file is refused */
 }
 
 /* Has the file the keys of a material alone? Else reports all that is wrong with it. */
@@ -138,14 +170,8 @@ static bool check_keys(document_node *root, const struct engine_materials *mater
   OWNED void *unused = memory_small(1, materials->values->size);
   for (size_t i = 0; i < document_count(root); i++) {
     const char *key = NULL;
-    bool known = false;
     document_item(root, i, &key);
-    for (size_t k = 0; key && !known && k < materials->values->count; k++) {
-      const char *path = materials->values->rows[k].path;
-      const size_t word = strcspn(path, ".");
-      known = strlen(key) == word && strncmp(path, key, word) == 0;
-    }
-    if (!key || known || text_is_one_of(key, material_words))
+    if (!key || (is_value(materials, key) && !strchr(key, '.')) || text_is_one_of(key, material_words))
       continue;
     field_defaults(materials->values, unused);
     return document_read(root, materials->values, material_words, unused);
@@ -160,6 +186,12 @@ static status open_material(const char *path, const struct engine_materials *mat
   if (code == STATUS_MISSING && strstr(path, " - ")) /* as own_name() writes it */
     text_append(error->message, sizeof error->message,
                 ". Tables show a rock as its name - its file's name: give the file alone, with its folder");
+  if (code == STATUS_OK && !file_name_ends(path)) { /* tables and stores know a rock of a file by the ending */
+    document_free(*out);
+    *out = NULL;
+    return status_fail(error, STATUS_CONTENT,
+                       "the name of a material's file ends in .yaml, .yml or .json: call it %s.yaml", path);
+  }
   if (code != STATUS_OK ||
       (scene_material_complete(document_root(*out), materials) && check_keys(document_root(*out), materials)))
     return code;
@@ -417,11 +449,19 @@ static struct scene *create(const struct engine_kind *kind) {
 static const struct engine_kind *read_engine(document_node *root) {
   document_node *engine = document_key(root, "engine");
   if (!engine) {
-    document_report(root, "engine",
-                    document_key(root, "material") || document_key(root, "like")
-                        ? "is missing: this looks like the file of a material; `clast materials FILE` "
-                          "checks it, and a scene names it, such as target.material: ./FILE"
-                        : "is missing; say which engine runs this scene, such as 'engine: dem'");
+    document_node *scene = document_key(root, "scene");
+    if (scene && document_scalar(scene))
+      document_report(
+          root, "engine",
+          "is missing: this looks like a campaign of the scene %.60s. `clast explain %.60s` explains the scene, "
+          "`clast plan FILE` tells what the campaign runs",
+          document_scalar(scene), document_scalar(scene));
+    else
+      document_report(root, "engine",
+                      document_key(root, "material") || document_key(root, "like")
+                          ? "is missing: this looks like the file of a material; `clast materials FILE` "
+                            "checks it, and a scene names it, such as target.material: ./FILE"
+                          : "is missing; say which engine runs this scene, such as 'engine: dem'");
     return NULL;
   }
   const char *name = document_scalar(engine);
@@ -657,6 +697,9 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   struct field_value taken = *value, before;
   TRY(set_file(row, &taken, error));
   field_get(row, scene->inputs, &before);
+  struct document *refused; /* the file is missing, or its name has no ending */
+  if (is_open(row) && strchr(value->text, '/') && !file_name_ends(value->text))
+    return open_material(value->text, scene->kind->materials, &refused, error);
   if (is_open(row))
     field_copy_text(taken.text, strrchr(value->text, '/') ? strrchr(value->text, '/') + 1 : value->text);
   TRY(field_set(row, scene->inputs, &taken, error));

@@ -267,13 +267,20 @@ size_t field_explain(const struct field_table *table, const char *prefix, bool r
 
 /* ---- names and units on the axes of charts ---- */
 
+/* Bodies have the same inputs: those of the projectile are called so, and target.material.name is "material name". */
+static size_t label_body(const char *path, char *label, size_t size) {
+  const size_t length = strcspn(path, ".");
+  const bool other = length == 10 && strncmp(path, "projectile", length) == 0 && strchr(path + length + 1, '.');
+  return other && size > length + 1 ? (size_t)snprintf(label, size, "%.*s ", (int)length, path) : 0;
+}
+
 void field_label_path(const char *path, char *label, size_t size) {
   const char *from = strrchr(path, '.'); /* the last two parts of the path */
   while (from && from > path && from[-1] != '.')
     from--;
   if (!from)
     from = path;
-  size_t used = 0;
+  size_t used = label_body(path, label, size);
   for (; *from && used + 1 < size; from++)
     label[used++] = *from == '.' || *from == '_' ? ' ' : *from;
   if (size)
@@ -281,10 +288,12 @@ void field_label_path(const char *path, char *label, size_t size) {
 }
 
 void field_label(const struct field *row, char *label, size_t size) {
-  if (row->label)
-    snprintf(label, size, "%s", row->label);
-  else
+  if (row->label) {
+    label[label_body(row->path, label, size)] = '\0';
+    text_append(label, size, "%s", row->label);
+  } else {
     field_label_path(row->path, label, size);
+  }
 }
 
 void field_label_unit(const char *unit, char *text, size_t size) {

@@ -128,10 +128,14 @@ status file_read(const char *path, const char *what, unsigned char **bytes, size
 
 /* ---- names ---- */
 
-bool file_name_is_document(const char *word) {
+bool file_name_ends(const char *word) {
   static const char *const endings[] = {".yaml", ".yml", ".json", NULL};
   const char *ending = strrchr(word, '.');
-  return strchr(word, '/') || (ending && text_is_one_of(ending, endings));
+  return ending && text_is_one_of(ending, endings);
+}
+
+bool file_name_is_document(const char *word) {
+  return strchr(word, '/') || file_name_ends(word);
 }
 
 char *file_name_in(const char *folder, const char *name) {

@@ -59,6 +59,7 @@ status file_folder(const char *path, struct error *error);
 /* Is the word the name of a document file, and not of a built-in document? It has a slash, or ends in .yaml, .yml or
  * .json. */
 bool file_name_is_document(const char *word);
+bool file_name_ends(const char *word); /* in .yaml, .yml or .json */
 
 /* Joins a folder and a file name; malloc'd, NULL without memory. An absolute name does not change, nor does any name
  * when `folder` is NULL or empty (the current folder). */

@@ -1,5 +1,8 @@
 /* `clast materials [NAME|FILE]`: the built-in materials, or one as a document with its sources. */
+#include <math.h>
+
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/words.h"
 
 /* The materials of one engine. */
 static status list(const struct engine_materials *materials, enum table_format format, struct error *error) {
@@ -27,21 +30,76 @@ static status list(const struct engine_materials *materials, enum table_format f
   return table_end(table, error);
 }
 
-/* Prints the document of a named material, or checks a file and prints it unchanged. A fluid needs no strength, so a
- * file without it is none that is wrong. */
+/* Judges a file as a scene does that takes its material; with `fewer`, one whose body needs fewer values. */
+static status judge(const struct engine_materials *materials, const char *file, bool fewer, struct error *error) {
+  const struct engine_trial *trial = &materials->trial;
+  SCENE scene = NULL;
+  TRY(scene_parse("material", trial->scene, &scene, error));
+  if (fewer)
+    TRY(scene_set_text(scene, trial->input, trial->value, error));
+  TRY(scene_set_text(scene, trial->section, file, error));
+  return scene_check(scene, error);
+}
+
+/* What a file leaves to the material that it is like, and of which values it gives one of two that belong together. */
+static status tell_like(const struct engine_materials *materials, document_node *root, struct error *error) {
+  const struct field_table *values = materials->values;
+  static const char *const words[] = {"material", "source", "sources", "like", NULL};
+  OWNED void *own = memory_small(1, values->size), *like = memory_small(1, values->size);
+  OWNED bool *given = memory_small(values->count, sizeof *given);
+  document_node *name = document_key(root, "like");
+  char text[2048] = "", shown[FIELD_TEXT_SIZE];
+  bool one[2] = {false};
+  if (!name || !document_scalar(name))
+    return STATUS_OK;
+  TRY(materials->load(document_scalar(name), like, error));
+  field_defaults(values, own);
+  document_read_given(root, values, words, own, given, NULL);
+  for (size_t i = 0; i < values->count; i++) {
+    const struct field *row = &values->rows[i];
+    struct field_value value;
+    bool other = false;
+    for (int k = 0; k < 2; k++)
+      one[k] |= given[i] && strcmp(row->path, materials->together[k]) == 0;
+    field_get(row, like, &value);
+    for (int k = 0; k < 2; k++) /* the other name of a value that the file gives */
+      other |= strcmp(row->path, materials->either[k]) == 0 &&
+               given[field_find(values, materials->either[1 - k], NULL) - values->rows];
+    if (other || given[i] || !field_is_active(values, row, like) || (row->kind == FIELD_REAL && isnan(value.number)))
+      continue;
+    field_show(row, &value, shown, sizeof shown);
+    text_append(text, sizeof text, "%s%s %s", *text ? ", " : "", row->path, shown);
+  }
+  if (*text)
+    words_print(stderr, "", "clast: as in %s: %s", document_scalar(name), text);
+  if (one[0] != one[1])
+    words_print(stderr, "",
+                "clast: warning: %s is the file's own and %s is that of %s: one measurement gives both, and "
+                "one alone means little. Give both",
+                materials->together[!one[0]], materials->together[one[0]], document_scalar(name));
+  return STATUS_OK;
+}
+
+/* Checks a material's file and prints it unchanged. */
+static status check_file(const struct engine_materials *materials, const char *file, struct error *error) {
+  DOCUMENT document = NULL;
+  struct error other;
+  const status code = judge(materials, file, false, error);
+  if (code != STATUS_OK && judge(materials, file, true, &other) != STATUS_OK)
+    return code;
+  if (code != STATUS_OK)
+    words_print(stderr, "", "clast: this is a material for %s; another one refuses it: %s", materials->trial.what,
+                error->message);
+  TRY(document_open(file, &document, error));
+  fputs(document_text(document), stdout);
+  return tell_like(materials, document_root(document), error);
+}
+
+/* Prints the document of a named material; it names the nearest one. */
 static status print_document(const struct engine_materials *materials, const char *name, struct error *error) {
   OWNED void *material = memory_small(1, materials->values->size);
-  OWNED char *text = NULL;
-  const bool file = strchr(name, '/') || strchr(name, '.');
-  const status code = file ? materials->load_file(name, material, &text, error)
-                           : materials->load(name, material, error); /* names the nearest one */
-  char needed[512] = "";
-  if (text)
-    materials->also_needed(text, needed, sizeof needed);
-  if (*needed)
-    fprintf(stderr, "clast: a scene whose body has strength also needs %s (`clast explain target.material`)\n", needed);
-  TRY(code);
-  fputs(file ? text : materials->text(name), stdout);
+  TRY(materials->load(name, material, error));
+  fputs(materials->text(name), stdout);
   return STATUS_OK;
 }
 
@@ -65,7 +123,9 @@ static status run(const struct command_line *line, struct error *error) {
     return STATUS_OK;
   }
   TRY(table_text_only(line->format, "a material's document", error));
-  return print_document(materials_of(line->arguments[0]), line->arguments[0], error);
+  const char *name = line->arguments[0];
+  const bool file = strchr(name, '/') || strchr(name, '.');
+  return (file ? check_file : print_document)(materials_of(name), name, error);
 }
 
 COMMAND(materials, "scenes and inputs", "[NAME|FILE]", .has_table = true, .run = run);

@@ -399,8 +399,39 @@ static bool is_quiet(const struct table *table, size_t c) {
   return (role == SAME || role == ZERO) && table->rows < BATCH_ROWS && table->kept_count > 0;
 }
 
+struct told {
+  uint64_t others; /* hash of a row's other inputs */
+  const char *cell;
+};
+
+static int told_order(const void *a, const void *b) {
+  const struct told *x = a, *y = b;
+  return x->others != y->others ? (x->others < y->others ? -1 : 1) : strcmp(x->cell, y->cell);
+}
+
+/* Do the inputs that are not left out tell the same rows apart without column c? */
+static bool is_told_by_others(const struct table *table, size_t c) {
+  const size_t rows = table->kept_count / table->column_count;
+  OWNED struct told *told = NULL;
+  if (memory_array(&told, rows, sizeof *told, "a table", NULL) != STATUS_OK)
+    return false;
+  for (size_t r = 0; r < rows; r++) {
+    const struct kept *row = &table->kept[r * table->column_count];
+    told[r].cell = row[c].text;
+    for (size_t k = 0; k < table->column_count; k++)
+      if (k != c && table->columns[k].input && !table->columns[k].left_out)
+        told[r].others = text_hash(told[r].others, row[k].text, strlen(row[k].text) + 1);
+  }
+  qsort(told, rows, sizeof *told, told_order);
+  for (size_t r = 1; r < rows; r++)
+    if (told[r].others == told[r - 1].others && strcmp(told[r].cell, told[r - 1].cell) != 0)
+      return false;
+  return true;
+}
+
 /* Where a table does not fit, inputs that only studies vary leave two thirds of its width to the results: the last ones
- * are left out, because the number of the point or run tells its rows apart. */
+ * are left out, because the number of the point or run tells its rows apart. Others that tell no rows apart, such as
+ * the values of several rocks, leave a third. */
 static void leave_out_inputs(struct table *table, size_t room) {
   size_t width = 0;
   bool numbered = false;
@@ -414,6 +445,14 @@ static void leave_out_inputs(struct table *table, size_t room) {
     struct column *column = &table->columns[c];
     column->left_out |= column->of_studies;
     width -= column->of_studies ? column->width + GAP : 0;
+  }
+  for (size_t c = table->column_count;
+       numbered && !table->asked && c-- > 0 && width > room - room / 3 && total_width(table) > room;) {
+    struct column *column = &table->columns[c];
+    if (!column->input || column->left_out || !is_told_by_others(table, c))
+      continue;
+    column->left_out = true;
+    width -= column->width + GAP;
   }
 }
 

@@ -117,8 +117,8 @@ bool uncertainty_all_one(double value, double half_width, double low, const stru
 
 /* Says on stderr that so many runs of a store are excluded; nothing for 0. */
 void uncertainty_excluded(int64_t count, const char *store);
-/* Says on stderr how many of these runs of a store gave no result (ask_run_missing()); nothing for none. wanted: 0 if the
- * number of all is told elsewhere. */
+/* Says on stderr how many of these runs of a store gave no result (ask_run_missing()); nothing for none. wanted: 0 if
+ * the number of all is told elsewhere. */
 void uncertainty_missing(int64_t missing, int64_t wanted, const char *store);
 /* Says on stderr that these campaigns of a store (ask_campaign_namesakes()) have one name; nothing for "". */
 void uncertainty_namesakes(const char *numbers, const char *campaign, const char *path);

@@ -214,10 +214,43 @@ same "$(sqlite3 two.db "select count(*) from run")" 2 "runs of a file of points 
 # A file tells at once all that it lacks; one that a body without strength can use is none that is wrong.
 printf 'material: bare\n' >bare.yaml
 expect 65 "$clast" materials bare.yaml
-says "also needs melt_energy (or off), shear_modulus, yield_stress (or off), tension_limit (or off), weibull.m (or off), weibull.k"
-"$clast" materials granite | sed '/^tension_limit/d; /^sources/,/^  weibull/d' >most.yaml
+says "'bare.yaml' lacks density, melt_energy (or off), shear_modulus (or off), tillotson.A"; one_error
+"$clast" materials granite | sed '/^yield_stress/d; /^sources/,/^  weibull/d' >most.yaml
 expect 0 "$clast" materials most.yaml
-says "also needs tension_limit (or off) ("
+says "this is a material for a body without strength; another one refuses it: target.material 'most.yaml' lacks yield_stress (or off)"
+"$clast" materials granite | sed '/^tension_limit/d; /^sources/,/^  weibull/d' >most.yaml # which a body without strength needs, too
+expect 65 "$clast" materials most.yaml
+says "lacks tension_limit (or off)"; one_error
+# It judges as a scene does.
+printf '%s\n' 'like: pumice' 'porosity: {fraction: 30 %}' >open.yaml
+expect 0 "$clast" materials open.yaml
+says "clast: as in pumice: density 2327 kg/m^3"; grep -q "porosity.distention" err && fail "the fraction gives the distention"
+expect 0 "$clast" explain disruption -s target.material=open.yaml
+printf '%s\n' 'like: pumice' 'porosity: {fraction: 30 %, distention: 2}' >both.yaml
+for command in "materials both.yaml" "explain disruption -s target.material=both.yaml"; do
+  expect 65 "$clast" $command
+  says "distention 2 is a fraction of 0.5, but fraction is 0.3: give one of the two"
+done
+printf '%s\n' 'like: granite' 'sources: {densty: weighed}' >both.yaml
+for command in "materials both.yaml" "explain disruption -s target.material=both.yaml"; do
+  "$clast" $command >out 2>err && fail "a source of nothing"
+  says "'densty' is no value of a material"
+done
+# A rock of a file is known by the ending of its name.
+mkdir -p sub && cp open.yaml sub/open.txt && cp open.yaml sub/open
+printf 'engine: sph\ntarget: {material: {file: ./sub/open.txt}}\n' >ending.yaml
+for command in "materials sub/open.txt" "explain disruption -s target.material=sub/open.txt" "explain ./ending.yaml"; do
+  "$clast" $command >out 2>err && fail "a material's file without its ending"
+  says "ends in .yaml, .yml or .json: call it "; says "sub/open.txt.yaml"; one_error
+done
+expect 65 "$clast" materials ./sub/open
+says "call it ./sub/open.yaml"; one_error
+expect 66 "$clast" materials ./sub/opem
+says "./sub/opem: there is no such file"
+# Flaws of two rocks: m of the file, k of the one that it is like.
+printf '%s\n' 'like: granite' 'weibull: {m: 9}' >m.yaml
+expect 0 "$clast" materials m.yaml
+says "weibull.k 1e33 1/m^3"; says "warning: weibull.m is the file's own and weibull.k is that of granite"
 expect 0 "$clast" materials rocks/other.yaml
 silent err
 
@@ -249,4 +282,4 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 93
+done_after 101

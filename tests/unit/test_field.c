@@ -367,6 +367,20 @@ TEST(absent_values_leave_the_identity) {
   free(text);
 }
 
+/* Both bodies have the same inputs, so those of the projectile are called so. */
+TEST(labels_tell_bodies_apart) {
+  char label[80];
+  field_label_path("target.material.name", label, sizeof label);
+  assert_string_equal(label, "material name");
+  field_label_path("projectile.material.name", label, sizeof label);
+  assert_string_equal(label, "projectile material name");
+  field_label_path("projectile.radius", label, sizeof label);
+  assert_string_equal(label, "projectile radius");
+  const struct field row = {.path = "projectile.material.density", .label = "density"};
+  field_label(&row, label, sizeof label);
+  assert_string_equal(label, "projectile density");
+}
+
 TEST(explains) {
   char *text = NULL;
   size_t size = 0;

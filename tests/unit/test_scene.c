@@ -114,6 +114,9 @@ TEST(errors_come_together) {
   assert_non_null(strstr(error.message, "looks like the file of a material"));
   assert_int_equal(scene_parse("t", "material: tuff\n", &scene, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "engine: is missing: this looks like the file of a material"));
+  assert_int_equal(scene_parse("t", "name: a\nscene: disruption@draft\nseeds: 3\n", &scene, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "this looks like a campaign of the scene disruption@draft. `clast explain "
+                                        "disruption@draft` explains the scene"));
   assert_int_equal(scene_parse("t", "engine: [tiny]\n", &scene, &error), STATUS_CONTENT);
   assert_int_equal(scene_parse("t", "engine: sph\n", &scene, &error), STATUS_CONTENT);
   assert_string_equal(error.message, "t:1:9: error: engine: there is no engine 'sph'; known are: tiny\n"

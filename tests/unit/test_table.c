@@ -96,6 +96,31 @@ TEST(test_intervals) {
 }
 
 /* A table for people cannot control the terminal: neither its cells nor its names and units. */
+/* Fourteen values of two rocks, of which the first, with the speed, tells the points apart: the result has its place.
+ */
+TEST(test_inputs_leave_room_for_results) {
+  OWNED char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  TABLE table = table_new(TABLE_BARE, out);
+  for (int c = 0; c < 15; c++) {
+    struct ask_column input = {.unit = "1", .factor = 1};
+    snprintf(input.name, sizeof input.name, c ? "of_rock_%02d" : "speed", c);
+    table_key(table, &input);
+  }
+  table_columns(table, (const char *const[]){"point_id", "result", NULL});
+  for (int i = 0; i < 16; i++) {
+    for (int c = 0; c < 15; c++)
+      table_real(table, c ? 1.25e30 * c + 1e30 * (i % 2) : 3.5 * (i / 2));
+    table_integer(table, i);
+    table_real(table, 0.5);
+  }
+  assert_int_equal(table_end(table, NULL), STATUS_OK);
+  fclose(out);
+  assert_true(table_hides(table, "of_rock_14") && table_hides(table, "of_rock_13"));
+  assert_true(!table_hides(table, "speed") && !table_hides(table, "of_rock_01") && !table_hides(table, "result"));
+}
+
 TEST(test_text_is_harmless) {
   static const char *const hostile[] = {"a\x1b[2J\x07", "b\x08\x7f", "\xc2\x9b\x9b\xc3\xa9", "\r\n\t"};
   OWNED char *text = NULL;

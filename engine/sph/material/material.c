@@ -41,37 +41,6 @@ const char *sph_materials_text(const char *name) {
   return builtin_text(builtin_material_list, name);
 }
 
-/* Is it a value, or a section of values? */
-static bool is_value(const char *path) {
-  const size_t length = strlen(path);
-  for (size_t i = 0; i < sph_materials_table.count; i++) {
-    const char *known = sph_materials_table.rows[i].path;
-    if (strncmp(known, path, length) == 0 && (known[length] == '.' || known[length] == '\0'))
-      return true;
-  }
-  return false;
-}
-
-/* `sources`: a text for each value or section. */
-static void read_sources(document_node *sources) {
-  if (!sources)
-    return;
-  if (document_kind(sources) != DOCUMENT_MAPPING) {
-    document_report(sources, "sources",
-                    "expected a source for each value, e.g. {density: weighed, weibull: our tests}");
-    return;
-  }
-  for (size_t i = 0; i < document_count(sources); i++) {
-    const char *key = NULL;
-    document_node *node = document_item(sources, i, &key);
-    if (!key || !is_value(key))
-      document_report(node, "sources", "'%.60s' is no value of a material; `clast explain target.material` lists them",
-                      key ? key : "");
-    else if (!document_scalar(node))
-      document_report(node, "sources", "expected a text that says where the value comes from");
-  }
-}
-
 static const char *const own_keys[] = {"material", "source", "sources", "like", NULL};
 
 static status read_material(struct document *document, struct sph_material *out, struct error *error) {
@@ -80,7 +49,6 @@ static status read_material(struct document *document, struct sph_material *out,
   if (scene_material_complete(root, &sph_materials) && document_read(root, &sph_materials_table, own_keys, out) &&
       !(out->tillotson.E_cv > out->tillotson.E_iv))
     document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
-  read_sources(document_key(root, "sources"));
   return document_verdict(document, error);
 }
 
@@ -88,15 +56,6 @@ status sph_materials_parse(const char *name, const char *text, struct sph_materi
   DOCUMENT document = NULL;
   TRY(document_parse(name, text, strlen(text), &document, error));
   return read_material(document, out, error);
-}
-
-status sph_materials_open(const char *path, void *out, char **text, struct error *error) {
-  DOCUMENT document = NULL;
-  *text = NULL;
-  TRY(document_open(path, &document, error));
-  *text = strdup(document_text(document));
-  status code = read_material(document, out, error);
-  return code || *text ? code : status_fail(error, STATUS_MEMORY, "%s: no memory", path);
 }
 
 /* The node at a path, or else at the nearest of its sections: "a.b.c", "a.b", "a". NULL: none. */
@@ -133,27 +92,6 @@ bool sph_materials_must_give(const char *path) {
   return text_is_one_of(path, must);
 }
 
-static void also_needed(const char *text, char *list, size_t size) {
-  struct sph_material material;
-  DOCUMENT document = NULL;
-  struct error unknown;
-  OWNED bool *given = memory_small(sph_materials_table.count, sizeof *given);
-  *list = '\0';
-  if (document_parse("material", text, strlen(text), &document, &unknown))
-    return;
-  field_defaults(&sph_materials_table, &material);
-  document_node *root = document_root(document);
-  if (!scene_material_complete(root, &sph_materials))
-    return;
-  document_read_given(root, &sph_materials_table, own_keys, &material, given, NULL);
-  for (size_t i = 0; i < sph_materials_table.count; i++) {
-    const char *path = sph_materials_table.rows[i].path;
-    const bool shear = strcmp(path, "shear_modulus") == 0; /* no body with strength can be without */
-    if (!given[i] && (shear || sph_materials_must_give(path)))
-      text_append(list, size, "%s%s%s", *list ? ", " : "", path, shear ? "" : " (or off)");
-  }
-}
-
 status sph_materials_load(const char *name, void *out, struct error *error) {
   const char *text = sph_materials_text(name);
   if (text)
@@ -185,8 +123,9 @@ const struct engine_materials sph_materials = {.values = &sph_materials_table,
                                                .name = sph_materials_name,
                                                .text = sph_materials_text,
                                                .load = sph_materials_load,
-                                               .load_file = sph_materials_open,
-                                               .also_needed = also_needed,
+                                               .trial = {"engine: sph\n", "target.material", "target.strength", "false",
+                                                         "a body without strength"},
+                                               .together = {"weibull.m", "weibull.k"},
                                                .source = sph_materials_source};
 
 /* Elastic constants, wave speeds and crack speeds that follow from a material. */

@@ -95,9 +95,6 @@ status sph_materials_load(const char *name, void *out, struct error *error);
 /* The same from the text of a document. */
 status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error);
 
-/* The same from a file. *text is its content (malloc'd, owned by the caller). Also returns the errors of document_open.
- */
-status sph_materials_open(const char *path, void *out, char **text, struct error *error);
 /* Values that may be off and must be given all the same, at least as off: without a yield stress a body is elastic at
  * any stress. */
 bool sph_materials_must_give(const char *path);

@@ -58,7 +58,7 @@ static const struct field_table outline = FIELD_TABLE(outline_rows, struct sph_b
 
 #define MATERIAL_DOC(default_)                                                                                         \
   "Material whose values become the defaults of this body's; `clast materials` lists them, and " default_              \
-  " is taken unless one is named. A file of your own is named with its folder or ending, such as ./my-rock.yaml. "     \
+  " is taken unless one is named. A file of your own ends in .yaml, such as ./my-rock.yaml. "                          \
   "custom: the scene gives all values."
 
 static const struct field matter_rows[] = {
