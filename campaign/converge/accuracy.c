@@ -18,6 +18,7 @@ enum {
   MOST_SEEDS = 10000,
   STUDY_SEEDS = 1000,    /* a study with more is no advice */
   STUDY_FIRST_SEEDS = 4, /* of `clast converge` without --seeds */
+  STUDY_MOST_SEEDS = 32, /* and without --max-seeds */
   LOOKED_AT = 1000
 };
 
@@ -45,25 +46,38 @@ int64_t accuracy_seeds(double mean, double deviation, double margin, bool share)
   return seeds > FEWEST_SEEDS ? seeds : FEWEST_SEEDS;
 }
 
+struct seen_rate {
+  char knob[64], setting[64];
+  double rate; /* processor time of a run over the engine's measure of its work */
+};
+
+struct kept_part {
+  struct ask_part part;
+  char knob[64], finest[64];
+};
+
 struct finding {
   const struct campaign *campaign;
   struct accuracy *accuracy;
   struct store *store;
-  const struct scene *scene; /* the one that was studied */
-  int64_t point;             /* its point in the store */
-  int64_t last_point;        /* the last such point that the store has */
+  struct scene *scene; /* the one that was studied; owned */
+  int64_t point;       /* its point in the store */
+  int64_t last_point;  /* the last such point that the store has */
   struct study_quantity quantity;
   char results[ASK_DOUBTS_RESULTS];
-  char own_out[128]; /* the scene's own level of the last knob, as "points = 400, ", if no run or law tells it; "" */
-  char ran[64];      /* the knob of the last level with runs, and its levels so far */
-  size_t levels;
-  double step[KNOB_LEVELS], change[KNOB_LEVELS];
+  char own_out[128];  /* the scene's own level of the last knob, as "points = 400, ", if no run or law tells it; "" */
+  char ran[64];       /* the knob of the last level with runs */
+  char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
+  char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
+  char hopeless[256]; /* knobs whose finest level is marked by its runs: "grains,time_step"; "": none */
   char marks[ACCURACY_MARKS];    /* of the level that becomes an option */
   struct convergence_row finest; /* the reference of the last knob that has one, for levels finer than it */
+  struct seen_rate *seen;        /* of levels that ran; owned */
+  size_t seen_count, seen_room;
+  struct kept_part *parts; /* of the scene and its levels; owned */
+  size_t part_count, part_room;
   bool studied;
-  int unstudied;   /* knobs of resolution with levels, but without the scene's own one */
-  double own_mean; /* with the scene's own settings: of the knob with most seeds there */
-  int64_t own_n;
+  int64_t own_n; /* most seeds of a level that is the scene's own */
 };
 
 static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
@@ -83,46 +97,14 @@ static bool is_varied(const struct campaign *campaign, const struct knob *knob, 
   return false;
 }
 
-/* Numbers without a step are finer where they are larger. */
-static double step_of(const struct knob *knob, const struct convergence_row *row) {
-  const bool number = knob && knob->factors[0] > 0;
-  return isnan(row->step) && number ? 1 / strtod(row->setting, NULL) : row->step;
-}
-
 /* The next finer level of a knob of numbers, over a level. */
 static double finer_by(const struct knob *knob) {
   return knob->step_power > 0 ? 0.5 : 2;
 }
 
-/* What a law of the least order leaves at the finest level, by its changes from coarser ones. NaN: not known. */
-static double left_beyond(const struct finding *finding, double step) {
-  double most = NAN;
-  for (size_t l = 0; l < finding->levels; l++)
-    if (finding->change[l] > 0 && finding->step[l] > step)
-      most = fmax(most, finding->change[l] / (pow(finding->step[l] / step, LIMIT_ORDER_LEAST) - 1));
-  return most;
-}
-
 /* What a setting with this mean may be off. NaN: a time is given, not an accuracy. */
 static double allowed(const struct campaign *campaign, double mean) {
   return campaign->accuracy_within * (campaign->accuracy_of_value ? fabs(mean) : 1);
-}
-
-/* Notes what the knob leaves beyond its finest level, `row`. One change may be small by chance: it counts only where it
- * is a small part of what is allowed, and then the knob is none that lacks a limit. */
-static void note_beyond(const struct finding *finding, struct accuracy_knob *of, const struct convergence_row *row) {
-  const double left = left_beyond(finding, step_of(of->knob, row));
-  const bool small = left < SMALL * allowed(finding->campaign, row->mean);
-  of->open &= !small;
-  of->beyond += finding->levels > 1 || small ? left : (double)NAN;
-}
-
-/* Sum over the knobs. NaN: not known. */
-static double beyond_of(const struct finding *finding) {
-  double sum = finding->unstudied > 0 ? (double)NAN : 0;
-  for (size_t k = 0; k < finding->accuracy->knob_count; k++)
-    sum += finding->accuracy->knob[k].beyond;
-  return sum;
 }
 
 /* Is the setting a level that a study of the knob has without a word of the user? */
@@ -148,83 +130,103 @@ static const char *unit_of(const struct campaign *campaign, const struct knob *k
 
 /* The levels of the study, for advice that goes on with it. */
 static void note_level(struct finding *finding, const struct knob *knob, const struct convergence_row *row) {
-  struct accuracy *accuracy = finding->accuracy;
-  char *levels = accuracy->levels, *unusual = accuracy->unusual;
+  char *levels = finding->levels, *unusual = finding->unusual;
   if (strcmp(finding->ran, row->knob) == 0)
-    text_append(levels, sizeof accuracy->levels, ",");
+    text_append(levels, sizeof finding->levels, ",");
   else
-    text_append(levels, sizeof accuracy->levels, "%s%s=", *levels ? " " : "", row->knob);
-  text_append(levels, sizeof accuracy->levels, "%s%s", row->setting, unit_of(finding->campaign, knob));
+    text_append(levels, sizeof finding->levels, "%s%s=", *levels ? " " : "", row->knob);
+  text_append(levels, sizeof finding->levels, "%s%s", row->setting, unit_of(finding->campaign, knob));
   if (knob->group != KNOB_SETTINGS && !condition_has(unusual, row->knob) && !is_usual(finding, knob, row->setting))
-    text_append(unusual, sizeof accuracy->unusual, "%s%s", *unusual ? "," : "", row->knob);
+    text_append(unusual, sizeof finding->unusual, "%s%s", *unusual ? "," : "", row->knob);
 }
 
-/* The share of what a knob leaves at a level that more seeds leave: the middle of its interval. */
-static double settled_of(const struct convergence_row *row) {
-  const double middle = fabs(isnan(row->distance) ? row->bias : row->distance);
-  return middle < row->resolution ? middle / row->resolution : 1;
+static double work_of(const struct scene *scene) {
+  return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
 }
 
-/* What is known of a knob of resolution; NULL: it is none, or one more than a study has. */
-static struct accuracy_knob *known_of(struct accuracy *accuracy, const struct knob *knob) {
-  size_t k = 0;
-  while (k < accuracy->knob_count && accuracy->knob[k].knob != knob)
-    k++;
-  if (!knob || knob->group != KNOB_RESOLUTION || k == LIMITS_STUDY_KNOBS)
-    return NULL;
-  if (k == accuracy->knob_count)
-    accuracy->knob[accuracy->knob_count++] = (struct accuracy_knob){.knob = knob, .settled = 1};
-  return &accuracy->knob[k];
+static status note_rate(struct finding *finding, const struct knob *knob, const struct convergence_row *row,
+                        struct error *error) {
+  struct error refused;
+  SCENE scene = scene_copy(finding->scene);
+  if (!(row->cpu > 0) || ladder_turn(knob, scene, row->setting, &refused) != STATUS_OK)
+    return STATUS_OK;
+  if (!grow_room(&finding->seen, &finding->seen_room, finding->seen_count + 1, sizeof *finding->seen))
+    return status_fail(error, STATUS_MEMORY, "no memory for the costs of a study");
+  struct seen_rate *seen = &finding->seen[finding->seen_count++];
+  *seen = (struct seen_rate){.rate = row->cpu / work_of(scene)};
+  snprintf(seen->knob, sizeof seen->knob, "%.63s", row->knob);
+  snprintf(seen->setting, sizeof seen->setting, "%.63s", row->setting);
+  return STATUS_OK;
 }
 
-/* First pass: what is known of each knob at the scene's own setting. */
-static status take_open(struct finding *finding, const struct convergence_row *row, struct error *error) {
-  (void)error;
+/* First pass: which levels there are. */
+static status take_level(struct finding *finding, const struct convergence_row *row, struct error *error) {
   const struct knob *knob = knob_of(finding->campaign, row->knob);
-  finding->studied = true;
-  char *knobs = finding->accuracy->knobs;
-  if (knob && knob->group == KNOB_RESOLUTION && isfinite(row->resolution) && !condition_has(knobs, row->knob))
-    text_append(knobs, sizeof finding->accuracy->knobs, "%s%s", *knobs ? ", " : "", row->knob);
-  if (row->base && row->n > finding->own_n) {
-    finding->own_mean = row->mean;
-    finding->own_n = row->n;
-  }
+  char *left_out = finding->accuracy->left_out;
+  const size_t room = sizeof finding->accuracy->left_out;
+  const bool of_resolution = knob && knob->group == KNOB_RESOLUTION;
   const bool ran = strcmp(finding->ran, row->knob) == 0;
-  struct accuracy_knob *of = known_of(finding->accuracy, knob);
-  const bool moves = row->resolution != 0; /* 0 where no run of the knob differs */
-  if (of && row->base) {
-    of->open |= row->open && moves;
-    of->settled = settled_of(row);
-  }
-  if (of && row->reference && row->n > 0)
-    of->value = strtod(row->setting, NULL);
-  if (!ran)
-    finding->levels = 0;
-  if (of && row->open && row->reference)
-    note_beyond(finding, of, row);
-  const bool finer = ran && finding->levels > 0 && step_of(knob, row) < finding->step[finding->levels - 1];
-  if (of && row->open && row->base && row->n == 0 && !finer) /* no law reaches the scene's own level */
-    of->beyond = NAN;
-  if (of)
-    finding->unstudied += row->reference - (row->base && (row->n > 0 || isfinite(row->resolution)));
-  if (row->n > 0 && knob)
+  finding->studied = true;
+  if (row->base && row->n > finding->own_n)
+    finding->own_n = row->n;
+  if (row->n > 0 && knob) {
     note_level(finding, knob, row);
-  if (row->n > 0 && finding->levels < KNOB_LEVELS) {
+    TRY(note_rate(finding, knob, row, error));
     snprintf(finding->ran, sizeof finding->ran, "%.63s", row->knob);
-    finding->step[finding->levels] = step_of(knob, row);
-    finding->change[finding->levels++] = fabs(row->bias) + row->bias_half_width;
   }
-  const bool left_out = row->n == 0 && !row->base && isnan(row->resolution) && ran; /* finer than a level that ran */
   if (!ran)
     *finding->own_out = '\0';
-  if (of && ran && row->base && row->open && row->n == 0)
+  if (of_resolution && ran && row->base && row->open && row->n == 0)
     snprintf(finding->own_out, sizeof finding->own_out, "%.60s = %.60s, ", row->knob, row->setting);
-  if (of && left_out && !*finding->accuracy->left_out && *finding->own_out)
-    snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%s%.30s", finding->own_out,
-             row->setting);
-  else if (of && left_out && !*finding->accuracy->left_out)
-    snprintf(finding->accuracy->left_out, sizeof finding->accuracy->left_out, "%.64s = %.64s", row->knob, row->setting);
+  const bool finer_out = row->n == 0 && !row->base && isnan(row->resolution) && ran; /* finer than a level that ran */
+  if (of_resolution && finer_out && !*left_out && *finding->own_out)
+    snprintf(left_out, room, "%s%.30s", finding->own_out, row->setting);
+  else if (of_resolution && finer_out && !*left_out)
+    snprintf(left_out, room, "%.64s = %.64s", row->knob, row->setting);
   return STATUS_OK;
+}
+
+/* A knob's part of the error of an option. One change between levels may be small by chance: it counts only where it is
+ * a small part of what is allowed. */
+static void take_part(const struct finding *finding, const struct ask_part *part, struct accuracy_option *option) {
+  if (option->part_count == LIMITS_STUDY_KNOBS)
+    return;
+  struct accuracy_part *to = &option->part[option->part_count++];
+  const bool small = part->beyond < SMALL * option->within;
+  *to = (struct accuracy_part){.knob = knob_of(finding->campaign, part->knob),
+                               .open = part->open && !small && part->error != 0,
+                               .error = part->error,
+                               .left_by_seeds = part->left_by_seeds,
+                               .beyond = part->coarser > 1 || small || !part->open ? part->beyond : (double)NAN,
+                               .finest = strtod(part->finest, NULL),
+                               .seeds = part->seeds};
+  option->beyond += to->beyond;
+}
+
+static void take_parts(const struct finding *finding, struct accuracy_option *option) {
+  for (size_t k = 0; k < finding->part_count; k++)
+    if (finding->parts[k].part.point == option->point)
+      take_part(finding, &finding->parts[k].part, option);
+}
+
+/* The parts of the scene that was studied and of its levels. */
+static status read_parts(struct finding *finding, struct error *error) {
+  ANSWER parts = ask_parts(finding->store, finding->point, finding->scene->kind->results_version,
+                           finding->quantity.column, error);
+  finding->part_count = 0;
+  for (struct ask_part part; ask_parts_next(&parts, &part);) {
+    if (!grow_room(&finding->parts, &finding->part_room, finding->part_count + 1, sizeof *finding->parts))
+      return status_fail(error, STATUS_MEMORY, "no memory for the parts of an error");
+    struct kept_part *kept = &finding->parts[finding->part_count++];
+    kept->part = part;
+    snprintf(kept->knob, sizeof kept->knob, "%.63s", part.knob);
+    snprintf(kept->finest, sizeof kept->finest, "%.63s", part.finest);
+  }
+  for (size_t k = 0; k < finding->part_count; k++) {
+    finding->parts[k].part.knob = finding->parts[k].knob;
+    finding->parts[k].part.finest = finding->parts[k].finest;
+  }
+  return answer_end(&parts);
 }
 
 /* The error, with what may lie beyond the finest levels. */
@@ -259,14 +261,17 @@ static status add_option(struct finding *finding, const struct convergence_row *
   snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
   option->share = finding->quantity.row && field_is_share(finding->quantity.row);
-  const bool own = option->own && finding->own_n > 0; /* else as of other levels without runs */
-  option->mean = own ? finding->own_mean : row->mean;
-  option->n = own ? finding->own_n : row->n;
+  option->mean = row->mean;
+  option->n = row->n;
   option->within = allowed(finding->campaign, option->mean);
-  const double beyond = beyond_of(finding), most = most_of(option->share, option->mean) - option->error;
-  if (option->open) /* the error is no larger than a share can move, as the store tells it */
-    option->beyond = isnan(beyond) ? (double)NAN : fmin(beyond, most);
-  option->settled = settled_of(row);
+  take_parts(finding, option);
+  const double most = most_of(option->share, option->mean) - option->error;
+  if (!option->open) /* a bound has nothing beyond it */
+    option->beyond = 0;
+  else if (option->error == 0) /* equal runs do not tell how far others may be */
+    option->beyond = NAN;
+  else if (option->beyond > most)
+    option->beyond = most;
   option->deviation = row->deviation;
   option->seeds = !isnan(accuracy->point_s) ? seeds_in(option, accuracy->point_s)
                   : isnan(option->beyond)   ? 0
@@ -362,13 +367,15 @@ static status take_option(struct finding *finding, const struct convergence_row 
   const struct knob *knob = knob_of(finding->campaign, row->knob);
   const bool extrapolated = row->n == 0 && !row->base && isfinite(row->resolution) && finding->finest.n > 0 &&
                             strcmp(finding->finest.knob, row->knob) == 0;
+  if (extrapolated && condition_has(finding->hopeless, row->knob))
+    return STATUS_OK;
   /* Models and parts of one are not chosen by cost. */
   if (!knob || knob->group == KNOB_MODEL || knob->group == KNOB_PART || !isfinite(row->error) ||
       !(isfinite(row->deviation) || extrapolated))
     return STATUS_OK;
   if (row->reference)
     finding->finest = *row;
-  bool there = false; /* every knob has the scene's own settings as a level */
+  bool there = row->base && row->n < finding->own_n; /* every knob has the scene's own settings as a level */
   for (size_t i = 0; row->base && i < accuracy->count; i++)
     there |= accuracy->options[i].own;
   bool marked = false;
@@ -377,6 +384,8 @@ static status take_option(struct finding *finding, const struct convergence_row 
   TRY(is_marked(finding, row->point, &marked, error));
   if (marked && !row->base)
     note_marked(finding, knob, row);
+  if (marked && !row->base && row->reference)
+    text_append(finding->hopeless, sizeof finding->hopeless, "%s%s", *finding->hopeless ? "," : "", row->knob);
   if (there || (marked && !row->base))
     return STATUS_OK;
 
@@ -446,19 +455,20 @@ static status divide_time(const struct campaign *campaign, struct accuracy *accu
 
 /* Reads the study of this scene, if there is one. */
 static status read_study(struct finding *finding, struct store *store, const struct scene *scene, struct error *error) {
-  static status (*const passes[])(struct finding *, const struct convergence_row *, struct error *) = {take_open,
+  static status (*const passes[])(struct finding *, const struct convergence_row *, struct error *) = {take_level,
                                                                                                        take_option};
   int64_t point = 0;
   if (study_quantity_find(scene->kind, finding->campaign->accuracy_quantity, &finding->quantity, error) != STATUS_OK)
     return STATUS_CONTENT;
   finding->store = store;
-  finding->scene = scene;
-  finding->unstudied = 0;
-  finding->accuracy->knob_count = 0;
+  scene_free(finding->scene);
+  finding->scene = scene_copy(scene);
   TRY(ask_doubts_results(store, finding->quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
   finding->point = point;
   finding->last_point = point ? point : finding->last_point;
+  if (point)
+    TRY(read_parts(finding, error));
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
     ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, finding->quantity.column, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
@@ -466,29 +476,6 @@ static status read_study(struct finding *finding, struct store *store, const str
     TRY(answer_end(&levels));
   }
   return STATUS_OK;
-}
-
-/* What each knob leaves of the error of the setting with the smallest one. */
-static status read_parts(const struct finding *finding, struct error *error) {
-  struct accuracy *accuracy = finding->accuracy;
-  const struct accuracy_option *least = &accuracy->options[accuracy->reference];
-  ANSWER parts = ask_parts(finding->store, least->point, finding->campaign->scene->kind->results_version,
-                           finding->quantity.column, error);
-  for (struct ask_part part; ask_parts_next(&parts, &part);) {
-    struct accuracy_knob *of = known_of(accuracy, knob_of(finding->campaign, part.knob));
-    const bool turned = strcmp(part.knob, least->knob) == 0;
-    accuracy->middle += part.error * (turned ? least->settled : of ? of->settled : 1);
-    if (of)
-      of->part = part.error + (least->open && of->beyond > 0 ? of->beyond : 0);
-  }
-  for (size_t k = 0; k < accuracy->knob_count; k++) {
-    const struct accuracy_knob *of = &accuracy->knob[k];
-    if (of->open && (!accuracy->open || of->part > accuracy->open->part))
-      accuracy->open = of;
-    if (of->part > 0 && !of->knob->choices[0] && (!accuracy->widest || of->part > accuracy->widest->part))
-      accuracy->widest = of;
-  }
-  return answer_end(&parts);
 }
 
 /* Reads the study of the first point that has one, if that of the campaign's scene is missing, and names its point. */
@@ -547,6 +534,7 @@ static status name_widest(const struct finding *finding, struct store *store, st
   const struct campaign *campaign = finding->campaign;
   struct accuracy *accuracy = finding->accuracy;
   double most = 1, need;
+  size_t studied = 1; /* points: of this one the study is */
   CAMPAIGN_WALK walk = {0};
   if (accuracy->chosen == accuracy->count)
     return STATUS_OK;
@@ -559,6 +547,7 @@ static status name_widest(const struct finding *finding, struct store *store, st
     if (!scene)
       continue;
     TRY(need_at(finding, store, scene, &row, &need, error));
+    studied += need > 0;
     if (!(need > most))
       continue;
     most = need;
@@ -568,6 +557,8 @@ static status name_widest(const struct finding *finding, struct store *store, st
              study_show_error(row.error, row.at_least, told),
              campaign_unit(campaign, campaign->accuracy_quantity, unit), row.mean);
   }
+  if (studied == design_points(walk.design) && !*accuracy->widest_point) /* none is wider */
+    *accuracy->studied = '\0';
   return STATUS_OK;
 }
 
@@ -598,25 +589,6 @@ static status no_result(const struct finding *finding, const char *path, const c
                      "accuracy: %s has no %s for this campaign: with its own settings, %" PRId64 " of %" PRId64
                      " runs are withheld%s. Then study it: `clast converge %s --quantity %s`",
                      store, quantity, doubts.withheld, doubts.runs, why, path, quantity);
-}
-
-status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,
-                     struct accuracy *accuracy, struct error *error) {
-  struct finding finding = {.campaign = campaign, .accuracy = accuracy};
-  STORE store = NULL;
-  *accuracy = (struct accuracy){.path = path};
-  TRY(divide_time(campaign, accuracy, error));
-  const status code = store_open_reader(store_path, &store, error);
-  if (code == STATUS_MISSING)
-    return no_study(campaign, path, store_path, error);
-  TRY(code);
-  TRY(read_study(&finding, store, campaign->scene, error));
-  TRY(read_points(&finding, store, error));
-  if (accuracy->count == 0)
-    return no_result(&finding, path, store_path, error);
-  choose(accuracy);
-  TRY(read_parts(&finding, error));
-  return name_widest(&finding, store, error);
 }
 
 void accuracy_clear(struct accuracy *accuracy) {
@@ -652,121 +624,411 @@ static void append_without(const char *words, const char *remedy, char *text, si
   }
 }
 
-/* The command that studies the knob at a level, one on either side, and the scene's own, whose error is wanted. Levels
- * that would be marked are studied with another input of a shorter step. */
-static void append_study(const struct accuracy *accuracy, const struct campaign *campaign, const struct knob *knob,
-                         double value, int64_t seeds, char *next, size_t size) {
-  const double finer = finer_by(knob);
+/* The finest level of a knob; the scene's own setting if no level has runs. 0: it is a choice. */
+static double finest_of(const struct campaign *campaign, const struct accuracy_part *part) {
   char own[64];
-  ladder_setting(knob, campaign->scene, own, sizeof own);
-  value = value > 0 ? value : strtod(own, NULL); /* 0: another study has the levels */
-  const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
-  char finest[64], remedy[160], set[sizeof remedy + 8] = "";
-  snprintf(finest, sizeof finest, "%.6g", value * finer);
-  const struct condition *mark = mark_of_level(campaign, knob, finest, remedy, sizeof remedy);
-  if (mark && !*remedy) {
-    text_append(next, size, ", but runs of them would be in doubt, and do not count: clast explain %s", mark->word);
-    return;
+  if (part->finest > 0)
+    return part->finest;
+  ladder_setting(part->knob, campaign->scene, own, sizeof own);
+  return strtod(own, NULL);
+}
+
+/* A study that is advised: `clast converge` with these words behind the campaign. */
+struct advised {
+  const struct knob *knob[LIMITS_STUDY_KNOBS];
+  char levels[LIMITS_STUDY_KNOBS][512]; /* "0.02m,0.01m"; "": those of a study without a word of the user */
+  size_t count;
+  int64_t seeds;
+  char remedy[160]; /* the --set that it needs: "fidelity.time_step='2.5e-07 s'"; "": none */
+};
+
+static status set_remedy(struct scene *scene, const char *remedy, struct error *error) {
+  char path[FIELD_TEXT_SIZE], value[64];
+  if (sscanf(remedy, "%63[^=]='%63[^']'", path, value) != 2) /* append_study() wrote it */
+    return STATUS_OK;
+  TRY(scene_set_text(scene, path, value, error));
+  return scene_check(scene, error);
+}
+
+/* How many of the first seeds of a level have no run, and what a run takes; NaN: there is none. */
+static status read_cost(const struct finding *finding, const struct scene *level, int64_t seeds, int64_t *missing,
+                        double *run_s, struct error *error) {
+  struct study_quantity main;
+  int64_t point = 0, runs = 0, ran = 0;
+  double cpu_s = 0;
+  TRY(store_point_find(finding->store, level, &point, error));
+  TRY(study_quantity_find(level->kind, OUTCOME_DEFAULT, &main, error));
+  ANSWER answer = ask_run_of_point(finding->store, point, level->kind, main.row, main.of_outcome, error);
+  for (struct ask_run_of_point run; point && ask_run_of_point_next(&answer, &run); runs++) {
+    const int64_t seed = (int64_t)(run.seed - (uint64_t)finding->campaign->first_seed);
+    ran += seed >= 0 && seed < seeds;
+    cpu_s += run.cpu_s;
   }
-  if (mark) {
-    snprintf(set, sizeof set, " --set %s", remedy);
+  *missing = seeds - ran;
+  *run_s = runs ? cpu_s / (double)runs : (double)NAN;
+  return point ? answer_end(&answer) : STATUS_OK;
+}
+
+/* The rate of the studied level that is nearest to this one: of the same knob if there is one. */
+static double rate_near(const struct finding *finding, const struct knob *knob, const char *setting) {
+  double rate = NAN, least = HUGE_VAL;
+  for (size_t i = 0; i < finding->seen_count; i++) {
+    const struct seen_rate *seen = &finding->seen[i];
+    const double far = fabs(log(strtod(seen->setting, NULL) / strtod(setting, NULL)));
+    const double distance = strcmp(seen->knob, knob->name) != 0   ? 1e9
+                            : strcmp(seen->setting, setting) == 0 ? 0
+                            : isfinite(far)                       ? far
+                                                                  : 1e6;
+    if (distance < least) {
+      least = distance;
+      rate = seen->rate;
+    }
+  }
+  return rate;
+}
+
+/* Adds what the levels of a knob lack. Those without runs take by their work what the nearest studied level tells. */
+static status add_cost(const struct finding *finding, const struct ladder *ladder, int64_t seeds, bool *own,
+                       int64_t *runs, double *cpu_s, struct error *error) {
+  for (size_t l = 0; l < ladder->count; l++) {
+    const struct ladder_level *level = &ladder->level[l];
+    int64_t missing;
+    double run_s;
+    TRY(read_cost(finding, level->scene, seeds, &missing, &run_s, error));
+    if (isnan(run_s))
+      run_s = rate_near(finding, ladder->knob, level->setting) * work_of(level->scene);
+    if (level->base && *own) /* the knobs share it */
+      continue;
+    *own |= level->base;
+    *runs += missing;
+    *cpu_s += missing ? (double)missing * run_s : 0;
+  }
+  return STATUS_OK;
+}
+
+/* What the study takes at all points of the campaign that it has. */
+static status cost_of(const struct finding *finding, const struct advised *study, int64_t seeds, int64_t *runs,
+                      double *cpu_s, struct error *error) {
+  const struct campaign *campaign = finding->campaign;
+  CAMPAIGN_WALK walk = {0};
+  *runs = 0;
+  *cpu_s = 0;
+  TRY(campaign_walk_begin(&walk, campaign, error));
+  for (int i = 0; i < STUDY_SCENES && campaign_walk_next(&walk); i++) {
+    bool own = false;
+    SCENE scene = campaign_walk_scene(&walk, error);
+    TRY(scene ? set_remedy(scene, study->remedy, error) : STATUS_CONTENT);
+    for (size_t k = 0; k < study->count; k++) {
+      struct error ignored;
+      struct ladder ladder;
+      OWNED char *notes = NULL;
+      if (ladder_make(study->knob[k], scene, *study->levels[k] ? study->levels[k] : NULL, &ladder, &notes, &ignored) !=
+          STATUS_OK)
+        continue;
+      const status code = add_cost(finding, &ladder, seeds, &own, runs, cpu_s, error);
+      ladder_clear(&ladder);
+      TRY(code);
+    }
+  }
+  return STATUS_OK;
+}
+
+/* "27 more runs, 14 s of processor time" */
+static status append_cost(const struct finding *finding, const struct advised *study, int64_t seeds, char *text,
+                          size_t size, struct error *error) {
+  int64_t runs;
+  double cpu_s;
+  char time[32];
+  TRY(cost_of(finding, study, seeds, &runs, &cpu_s, error));
+  progress_duration(cpu_s, time, sizeof time);
+  text_append(text, size, "%" PRId64 " more runs", runs);
+  if (isfinite(cpu_s))
+    text_append(text, size, ", %s of processor time", time);
+  return STATUS_OK;
+}
+
+/* Has the store such levels of the knob for the scene with the remedy? Then their study is not advised again. */
+static status is_studied(const struct finding *finding, const struct advised *study, double finest, bool *is,
+                         struct error *error) {
+  int64_t point = 0;
+  SCENE scene = scene_copy(finding->scene);
+  *is = false;
+  TRY(set_remedy(scene, study->remedy, error));
+  TRY(store_point_find(finding->store, scene, &point, error));
+  if (!point)
+    return STATUS_OK;
+  ANSWER levels = ask_convergence_levels(finding->store, point, scene->kind->results_version, finding->quantity.column,
+                                         error);
+  const bool down = finer_by(study->knob[0]) < 1;
+  for (struct convergence_row row; ask_convergence_next(&levels, &row);) {
+    const double setting = strtod(row.setting, NULL) * (down ? 1 - 1e-5 : 1 + 1e-5);
+    *is |= strcmp(row.knob, study->knob[0]->name) == 0 && row.n > 0 && (down ? setting <= finest : setting >= finest);
+  }
+  return answer_end(&levels);
+}
+
+/* Appends a level to a list, as the store spells it if it has this one up to digits, unless it is there already. */
+static void append_level(const struct finding *finding, const struct knob *knob, double value, char *list,
+                         size_t size) {
+  char level[80], word[80];
+  ladder_setting(knob, finding->campaign->scene, level, sizeof level); /* the scene's own */
+  if (!(fabs(strtod(level, NULL) - value) < 2e-3 * value))
+    snprintf(level, sizeof level, "%.4g", value);
+  for (size_t i = 0; i < finding->seen_count; i++)
+    if (strcmp(finding->seen[i].knob, knob->name) == 0 &&
+        fabs(strtod(finding->seen[i].setting, NULL) - value) < 2e-3 * value)
+      snprintf(level, sizeof level, "%s", finding->seen[i].setting);
+  text_append(level, sizeof level, "%s", unit_of(finding->campaign, knob));
+  for (const char *words = list; ladder_next_word(&words, word, sizeof word);)
+    if (strcmp(word, level) == 0)
+      return;
+  text_append(list, size, "%s%s", *list ? "," : "", level);
+}
+
+/* The command that studies the knob at its finest level, one on either side, and the scene's own, whose error is
+ * wanted. Levels that would be marked are studied with another input of a shorter step. */
+static status append_study(const struct finding *finding, const struct accuracy_part *part, char *next, size_t size,
+                           struct error *error) {
+  const struct campaign *campaign = finding->campaign;
+  const struct knob *knob = part->knob;
+  const char *words = finding->accuracy->path;
+  OWNED struct advised *study = memory_small(1, sizeof *study);
+  const double finer = finer_by(knob), value = finest_of(campaign, part);
+  char own[64], finest[64];
+  *study = (struct advised){.knob = {knob}, .count = 1, .seeds = STUDY_FIRST_SEEDS};
+  if (part->seeds > STUDY_FIRST_SEEDS) /* not fewer than the study has */
+    study->seeds = part->seeds;
+  ladder_setting(knob, campaign->scene, own, sizeof own);
+  snprintf(finest, sizeof finest, "%.6g", value * finer);
+  const struct condition *mark = value > 0 ? mark_of_level(campaign, knob, finest, study->remedy, sizeof study->remedy)
+                                           : NULL;
+  if (mark && !*study->remedy) {
+    text_append(next, size, ", but runs of them would be in doubt, and do not count: clast explain %s", mark->word);
+    return STATUS_OK;
+  }
+  bool studied = false;
+  if (mark)
+    TRY(is_studied(finding, study, value * finer, &studied, error));
+  if (studied) {
+    text_append(next, size, ". The store has them with --set %s: `clast plan ", study->remedy);
+    append_without(words, study->remedy, next, size);
+    text_append(next, size, " --set %s` goes on from there", study->remedy);
+    return STATUS_OK;
+  }
+  if (mark)
     text_append(next, size,
                 ", with --set %s here and in later commands, or in `set` of the campaign: else their runs "
                 "are in doubt (clast explain %s) and do not count",
-                remedy, mark->word);
-  }
+                study->remedy, mark->word);
+  const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
+  for (size_t i = 0; i < 4 && value > 0; i++)
+    append_level(finding, knob, levels[i], study->levels[0], sizeof study->levels[0]);
   text_append(next, size, ": `clast converge ");
-  append_without(accuracy->path, mark ? remedy : "", next, size);
-  text_append(next, size, "%s --knob %s=", set, knob->name);
-  for (size_t i = 0; i < 4; i++)
-    if (i < 3 || (levels[i] != levels[0] && levels[i] != levels[1] && levels[i] != levels[2]))
-      text_append(next, size, "%s%.4g%s", i ? "," : "", levels[i], unit_of(campaign, knob));
-  if (seeds > STUDY_FIRST_SEEDS) /* not fewer than the study has */
-    text_append(next, size, " --seeds %" PRId64, seeds);
-  text_append(next, size, "`");
+  append_without(words, study->remedy, next, size);
+  text_append(next, size, "%s%s --knob %s%s%s", mark ? " --set " : "", study->remedy, knob->name,
+              *study->levels[0] ? "=" : "", study->levels[0]);
+  if (study->seeds > STUDY_FIRST_SEEDS)
+    text_append(next, size, " --seeds %" PRId64, study->seeds);
+  text_append(next, size, "` (");
+  TRY(append_cost(finding, study, study->seeds, next, size, error));
+  if (study->seeds < STUDY_MOST_SEEDS) {
+    text_append(next, size, "; at most ");
+    TRY(append_cost(finding, study, STUDY_MOST_SEEDS, next, size, error));
+    text_append(next, size, ", with %d seeds", STUDY_MOST_SEEDS);
+  }
+  text_append(next, size, ")");
+  return STATUS_OK;
 }
 
-/* Finer levels of the knob without a limit: which, and what a run of the finest one takes. */
-static void advise_levels(const struct accuracy *accuracy, const struct campaign *campaign,
-                          const struct accuracy_option *best, char *next, size_t size) {
-  const struct knob *knob = accuracy->open->knob;
-  const double value = accuracy->open->value, finer = finer_by(knob);
-  const char *unit = unit_of(campaign, knob);
-  char setting[64], time[32];
-  snprintf(setting, sizeof setting, "%.6g", value * finer);
-  const double run_s = best->run_s * work_at(campaign, knob, setting) /
-                       work_at(campaign, knob_of(campaign, best->knob), best->setting);
-  progress_duration(run_s, time, sizeof time);
+/* Have runs told that finer levels of the knob are in doubt, and does no other setting cure it? */
+static bool is_hopeless(const struct finding *finding, const struct accuracy_part *part) {
+  char finest[64], remedy[160];
+  snprintf(finest, sizeof finest, "%.6g", finest_of(finding->campaign, part) * finer_by(part->knob));
+  return condition_has(finding->hopeless, part->knob->name) &&
+         !(mark_of_level(finding->campaign, part->knob, finest, remedy, sizeof remedy) && *remedy);
+}
+
+/* Finer levels of the knob without a limit. */
+static status advise_levels(const struct finding *finding, const struct accuracy_part *part, char *next, size_t size,
+                            struct error *error) {
+  char setting[64], shown[STUDY_SETTING], upto[STUDY_SETTING + 8] = "";
+  snprintf(setting, sizeof setting, "%.4g", finest_of(finding->campaign, part));
+  if (finest_of(finding->campaign, part) > 0)
+    snprintf(upto, sizeof upto, " up to %s", study_show_setting(finding->scene->kind, part->knob, setting, shown));
+  text_append(next, size, "The results show no limit in %s%s", part->knob->name, upto);
+  if (is_hopeless(finding, part)) {
+    text_append(next, size, ", and the runs of its finest levels are in doubt. No setting that was studied is enough");
+    return STATUS_OK;
+  }
   text_append(
       next, size,
-      "The results show no limit in %s up to %.4g%s%s: no value of it is known to be enough, and more seeds alone "
-      "do not help. Finer levels may show a limit%s%s%s",
-      knob->name, value, *unit ? " " : "", unit, run_s > 0 ? " (a run of the finest takes " : "", run_s > 0 ? time : "",
-      run_s > 0 ? ")" : "");
-  append_study(accuracy, campaign, knob, value, best->n, next, size);
+      ": no value of it is known to be enough, and more seeds alone do not help. Finer levels may show a limit");
+  return append_study(finding, part, next, size, error);
+}
+
+/* With what the slowest law leaves beyond the levels. */
+static double told_of(const struct accuracy_option *option, const struct accuracy_part *part) {
+  return (part->error > 0 ? part->error : 0) + (option->open && part->beyond > 0 ? part->beyond : 0);
 }
 
 /* Finer levels of the knob that leaves most of the error. */
-static void advise_widest(const struct accuracy *accuracy, const struct campaign *campaign, int64_t seeds, char *next,
-                          size_t size) {
+static status advise_widest(const struct finding *finding, const struct accuracy_part *widest, char *next, size_t size,
+                            struct error *error) {
   char text[CAMPAIGN_UNIT];
-  const struct accuracy_knob *widest = accuracy->widest;
+  const struct accuracy_option *best = &finding->accuracy->options[finding->accuracy->reference];
   text_append(next, size, "Finer levels of %s, which leaves most of it (%.2g%s), may narrow it", widest->knob->name,
-              widest->part, campaign_unit(campaign, campaign->accuracy_quantity, text));
-  append_study(accuracy, campaign, widest->knob, widest->value, seeds, next, size);
+              told_of(best, widest), campaign_unit(finding->campaign, finding->campaign->accuracy_quantity, text));
+  return append_study(finding, widest, next, size, error);
 }
 
-/* More seeds: how many, and what they take at all levels. They narrow the interval of the distance to the limit, and
- * leave its middle, and the errors of other studies. */
-static void advise_seeds(const struct accuracy *accuracy, const struct campaign *campaign,
-                         const struct accuracy_option *best, char *next, size_t size) {
-  const double error = resolution_of(best), middle = fmin(accuracy->middle, error);
-  const double factor = error > 0 ? (error - middle) / (best->within - middle) : 2; /* 0: no run differs yet */
-  const double seeds = ceil((double)best->n * factor * factor);
+/* The knobs of a study with more seeds. They narrow the interval of each knob's distance to the limit, and leave its
+ * middle. Knobs whose intervals are small beside the room for them stay as they are. 0: more seeds do not reach it. */
+static double choose_seeds(const struct finding *finding, const struct accuracy_option *best, double room,
+                           struct advised *study) {
+  bool stays[LIMITS_STUDY_KNOBS] = {false};
+  double rest = 0, sum = 0, seeds = 0; /* rest: of knobs that stay */
+  for (bool again = true; again;) {
+    size_t least = best->part_count;
+    double width = HUGE_VAL;
+    for (size_t k = 0; k < best->part_count; k++) {
+      const double of = told_of(best, &best->part[k]) - best->part[k].left_by_seeds;
+      if (!stays[k] && best->error > 0 && !(of >= width)) {
+        least = k;
+        width = of > 0 ? of : 0;
+      }
+    }
+    again = least < best->part_count && rest + width <= SMALL * room;
+    if (again) {
+      stays[least] = true;
+      rest += width;
+    }
+  }
+  for (size_t k = 0; k < best->part_count; k++)
+    if (!stays[k])
+      sum += told_of(best, &best->part[k]) - best->part[k].left_by_seeds;
+  const double factor = best->error > 0 ? sum / (room - rest) : 2; /* 0: no run differs yet */
+  for (size_t k = 0; k < best->part_count; k++) {
+    const struct accuracy_part *part = &best->part[k];
+    if (stays[k])
+      continue;
+    const size_t length = strlen(part->knob->name);
+    const char *levels = condition_has(finding->unusual, part->knob->name) ? finding->levels : NULL;
+    while (levels && (strncmp(levels, part->knob->name, length) != 0 || levels[length] != '='))
+      levels = (levels = strchr(levels, ' ')) ? levels + 1 : NULL;
+    if (levels)
+      snprintf(study->levels[study->count], sizeof study->levels[0], "%.*s", (int)strcspn(levels + length + 1, " "),
+               levels + length + 1);
+    study->knob[study->count++] = part->knob;
+    seeds = fmax(seeds, ceil((double)part->seeds * factor * factor));
+  }
+  return seeds;
+}
+
+/* More seeds: how many, and what they take. */
+static status advise_seeds(const struct finding *finding, const struct accuracy_part *widest, double middle, char *next,
+                           size_t size, struct error *error) {
+  const struct accuracy_option *best = &finding->accuracy->options[finding->accuracy->reference];
+  OWNED struct advised *study = memory_small(1, sizeof *study);
+  *study = (struct advised){.count = 0};
+  const double room = best->within - middle;
+  const double seeds = room > 0 ? choose_seeds(finding, best, room, study) : 0;
   char text[CAMPAIGN_UNIT];
-  if (middle >= best->within || seeds > STUDY_SEEDS) {
-    if (middle < best->within && error > 0)
+  if (room <= 0 || seeds > STUDY_SEEDS || study->count == 0) {
+    if (room > 0 && best->error > 0)
       text_append(next, size, "More than %d seeds at every level would be needed", STUDY_SEEDS);
     else
       text_append(
           next, size,
           "More seeds are not likely to help: they narrow the interval of this error, and leave about %.2g%s of it",
-          middle, campaign_unit(campaign, campaign->accuracy_quantity, text));
+          fmin(middle, resolution_of(best)),
+          campaign_unit(finding->campaign, finding->campaign->accuracy_quantity, text));
     text_append(next, size, ". No setting that was studied is enough");
-    if (middle >= best->within && accuracy->widest) {
-      text_append(next, size, ". ");
-      advise_widest(accuracy, campaign, best->n, next, size);
-    }
-    return;
+    if (room > 0 || !widest)
+      return STATUS_OK;
+    text_append(next, size, ". ");
+    return advise_widest(finding, widest, next, size, error);
   }
-  double time_s = 0;
-  char time[32], seen[512] = "", knobs[512] = "", own[sizeof accuracy->levels + 128] = "";
-  for (size_t i = 0; i < accuracy->count; i++) {
-    const struct accuracy_option *option = &accuracy->options[i];
-    if (!option->extrapolated)
-      time_s += fmax(seeds - (double)option->n, 0) * option->run_s;
-    if (condition_has(seen, option->knob))
-      continue;
-    text_append(seen, sizeof seen, "%s%s", *seen ? "," : "", option->knob);
-    const int length = (int)strlen(option->knob);
-    const char *levels = accuracy->levels;
-    while (levels && (strncmp(levels, option->knob, (size_t)length) != 0 || levels[length] != '='))
-      levels = (levels = strchr(levels, ' ')) ? levels + 1 : NULL;
-    if (levels && condition_has(accuracy->unusual, option->knob))
-      text_append(own, sizeof own, " --knob %.*s", (int)strcspn(levels, " "), levels);
-    else
-      text_append(knobs, sizeof knobs, "%s%s", *knobs ? "," : " --knob ", option->knob);
-  }
-  progress_duration(time_s, time, sizeof time);
-  if (error > 0)
-    text_append(next, size,
-                "More seeds narrow the interval of this error. The study has %" PRId64
-                "; if they leave %.2g of it, about %.0f at every level are needed, which take",
-                best->n, middle, seeds);
+  study->seeds = (int64_t)seeds;
+  if (best->error > 0)
+    text_append(
+        next, size,
+        "More seeds narrow the interval of this error. If they leave %.2g of it, about %.0f at the levels of this "
+        "study are needed, which take ",
+        middle, seeds);
   else
-    text_append(next, size, "More seeds may show a difference; %.0f at every level take", seeds);
-  text_append(next, size, " %s of processor time: `clast converge %s%s%s --max-seeds %.0f --within off --seeds %.0f`",
-              time, accuracy->path, knobs, own, seeds, seeds);
+    text_append(next, size, "More seeds may show a difference; %.0f at every level take ", seeds);
+  TRY(append_cost(finding, study, study->seeds, next, size, error));
+  text_append(next, size, ": `clast converge %s", finding->accuracy->path);
+  const char *before = " --knob ";
+  for (size_t k = 0; k < study->count; k++)
+    if (!*study->levels[k]) {
+      text_append(next, size, "%s%s", before, study->knob[k]->name);
+      before = ",";
+    }
+  for (size_t k = 0; k < study->count; k++)
+    if (*study->levels[k])
+      text_append(next, size, " --knob %s=%s", study->knob[k]->name, study->levels[k]);
+  text_append(next, size, " --max-seeds %.0f --within off --seeds %.0f`", seeds, seeds);
+  return STATUS_OK;
+}
+
+/* No option reaches the accuracy: what would, for the one with the smallest error. */
+static status advise(struct finding *finding, struct error *error) {
+  struct accuracy *accuracy = finding->accuracy;
+  const struct accuracy_option *best = &accuracy->options[accuracy->reference];
+  const struct accuracy_part *open = NULL, *widest = NULL;
+  char *next = accuracy->advice;
+  const size_t size = sizeof accuracy->advice;
+  double middle = 0; /* what more seeds leave */
+  for (size_t k = 0; k < best->part_count; k++) {
+    const struct accuracy_part *part = &best->part[k];
+    middle += part->left_by_seeds > 0 ? part->left_by_seeds : 0;
+    if (part->open && (!open || told_of(best, part) > told_of(best, open)))
+      open = part;
+    if (told_of(best, part) > 0 && part->knob->group == KNOB_RESOLUTION && !part->knob->choices[0] &&
+        !is_hopeless(finding, part) && (!widest || told_of(best, part) > told_of(best, widest)))
+      widest = part;
+  }
+  const bool by_resolution = !open && middle >= best->within;
+  const char *name = open ? open->knob->name : "";
+  const bool of_another = strncmp(accuracy->left_out, name, strlen(name)) != 0;
+  const bool is_wide = widest && widest != open && told_of(best, widest) >= best->within;
+  if (open && is_wide) /* finer levels of the open knob are not enough */
+    return advise_widest(finding, widest, next, size, error);
+  if (*accuracy->left_out && !by_resolution && !of_another) {
+    text_append(next, size,
+                "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
+                accuracy->left_out, accuracy->path, finding->campaign->accuracy_quantity);
+    return STATUS_OK;
+  }
+  return open ? advise_levels(finding, open, next, size, error)
+              : advise_seeds(finding, widest, middle, next, size, error);
+}
+
+static void release(struct finding *finding) {
+  scene_free(finding->scene);
+  free(finding->parts);
+  free(finding->seen);
+}
+
+status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,
+                     struct accuracy *accuracy, struct error *error) {
+  __attribute__((cleanup(release))) struct finding finding = {.campaign = campaign, .accuracy = accuracy};
+  STORE store = NULL;
+  *accuracy = (struct accuracy){.path = path};
+  TRY(divide_time(campaign, accuracy, error));
+  const status code = store_open_reader(store_path, &store, error);
+  if (code == STATUS_MISSING)
+    return no_study(campaign, path, store_path, error);
+  TRY(code);
+  TRY(read_study(&finding, store, campaign->scene, error));
+  TRY(read_points(&finding, store, error));
+  if (accuracy->count == 0)
+    return no_result(&finding, path, store_path, error);
+  choose(accuracy);
+  if (accuracy->chosen == accuracy->count && isnan(accuracy->point_s))
+    TRY(advise(&finding, error));
+  return name_widest(&finding, store, error);
 }
 
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
@@ -805,28 +1067,13 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   const struct accuracy_option *best = &accuracy->options[accuracy->reference];
   const char *quantity = campaign->accuracy_quantity, *path = accuracy->path;
   const double least = resolution_of(best);
-  char next[1600] = "", width[64], share[64] = "", more[256] = "", chosen[256], smallest[1200], text[CAMPAIGN_UNIT];
+  char width[64], share[64] = "", more[256] = "", chosen[256], smallest[1200], text[CAMPAIGN_UNIT];
   const char *unit = campaign_unit(campaign, campaign->accuracy_quantity, text);
   name_option(campaign, best, chosen, sizeof chosen);
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, best->mean == 0 ? " (no share of a mean of 0 allows an error)" : " (%s)",
              text_percent(least / fabs(best->mean), (char[TEXT_PERCENT]){0}));
   const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
-  const bool by_resolution = !accuracy->open && accuracy->middle >= best->within;
-  const char *open = accuracy->open ? accuracy->open->knob->name : "";
-  const bool of_another = strncmp(accuracy->left_out, open, strlen(open)) != 0;
-  const bool is_wide = accuracy->widest && accuracy->widest != accuracy->open &&
-                       accuracy->widest->part >= best->within; /* finer levels of another knob are not enough */
-  if (is_wide && accuracy->open)
-    advise_widest(accuracy, campaign, best->n, next, sizeof next);
-  else if (*accuracy->left_out && !by_resolution && !of_another)
-    text_append(next, sizeof next,
-                "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
-                accuracy->left_out, path, quantity);
-  else if (accuracy->open)
-    advise_levels(accuracy, campaign, best, next, sizeof next);
-  else
-    advise_seeds(accuracy, campaign, best, next, sizeof next);
   char wider[32];
   const double percent = campaign->accuracy_of_value ? 100 : 1,
                mean = campaign->accuracy_of_value ? fabs(best->mean) : 1;
@@ -857,8 +1104,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
       "accuracy: %s%s%sno setting %s %s within %s. %s. %s. You can %sask for the least error in a time: `clast "
       "plan %s --within 10min`",
       *accuracy->studied ? "by the study of " : "", accuracy->studied, *accuracy->studied ? ", " : "",
-      a_guess ? "is known to give" : "gives", quantity, show_width(campaign, width, sizeof width), smallest, next, more,
-      path);
+      a_guess ? "is known to give" : "gives", quantity, show_width(campaign, width, sizeof width), smallest,
+      accuracy->advice, more, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -939,6 +1186,35 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   return table_end(table, error);
 }
 
+/* The knobs whose parts the error has, or those of them without a limit, in the order of ask_resolution(): "grains,
+ * time_step". Returns text. */
+static const char *name_knobs(const struct accuracy_option *option, bool without_limit, char *text, size_t size) {
+  *text = '\0';
+  for (const char *last = "", *next; last; last = next) {
+    next = NULL;
+    for (size_t k = 0; k < option->part_count; k++) {
+      const struct accuracy_part *part = &option->part[k];
+      if (without_limit ? part->beyond > 0 : !isnan(part->error))
+        next = strcmp(part->knob->name, last) > 0 && (!next || strcmp(part->knob->name, next) < 0) ? part->knob->name
+                                                                                                   : next;
+    }
+    if (next)
+      text_append(text, size, "%s%s", *text ? ", " : "", next);
+  }
+  return text;
+}
+
+/* "+- 0.05 or more". Returns text. */
+static const char *show_least(const struct accuracy *accuracy, double point_s, const char *unit, char *text,
+                              size_t size) {
+  bool open;
+  const double least = accuracy_least(accuracy, point_s, &open);
+  snprintf(text, size, "no result");
+  if (!isnan(least))
+    snprintf(text, size, "\xc2\xb1 %.2g%s%s", least, unit, open ? " or more" : "");
+  return text;
+}
+
 /* What is chosen, which error it gives, and for a time what half and twice of it would give. `timed`: with the time by
  * the runs of the study; `plan` predicts it below by its own. */
 static void print_choice(const struct accuracy *accuracy, const struct campaign *campaign, const char *before,
@@ -947,14 +1223,15 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     return;
   const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
   const bool in_time = !isnan(accuracy->point_s);
-  char time[32], allowed[32], chosen[256], cost[120] = "", share[64] = "", text[CAMPAIGN_UNIT];
+  char time[32], allowed[32], chosen[256], cost[120] = "", share[64] = "", text[CAMPAIGN_UNIT], knobs[256];
+  char beyond[64] = "", resolution[UNCERTAINTY_TEXT];
   const char *unit = campaign_unit(campaign, campaign->accuracy_quantity, text);
   name_option(campaign, option, chosen, sizeof chosen);
   if (option->beyond > 0)
     words_print(out, before,
                 "no limit is seen in %s: total adds what a law of order %g would leave beyond the finest level, which "
                 "is a guess and no bound",
-                accuracy->open ? accuracy->open->knob->name : "a setting", LIMIT_ORDER_LEAST);
+                name_knobs(option, true, knobs, sizeof knobs), LIMIT_ORDER_LEAST);
   if (*option->marks)
     words_print(out, before, "the results of this choice are in doubt (!), %s (`clast explain` and the word)",
                 option->marks);
@@ -969,15 +1246,18 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     snprintf(cost, sizeof cost, ": %s of processor time", time);
   if (in_time)
     text_append(cost, sizeof cost, timed ? " (%s allowed)" : " (%s of processor time allowed)", allowed);
-  const char *const or_more[] = {"", " or more"}, *more = or_more[isnan(option->beyond)];
+  const char *more = isnan(option->beyond) ? " or more" : "";
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, " (%s of its mean %.3g%s)",
              text_percent(option->total / fabs(option->mean), (char[TEXT_PERCENT]){0}), option->mean, unit);
+  if (option->beyond > 0)
+    snprintf(beyond, sizeof beyond, ", %.2g%s beyond the levels", option->beyond, unit);
   words_print(out, before,
-              "%s \xc2\xb1 %.2g%s%s%s, resolution %.2g%s%s (%s) and the rest seeds, with %s and %" PRId64
+              "%s \xc2\xb1 %.2g%s%s%s, resolution %s%s (%s)%s and the rest seeds, with %s and %" PRId64
               " seeds a point%s",
-              campaign->accuracy_quantity, option->total, unit, more, share, resolution_of(option), unit, more,
-              accuracy->knobs, chosen, option->seeds, cost);
+              campaign->accuracy_quantity, option->total, unit, more, share,
+              study_show_error(option->error, option->open, resolution), unit,
+              name_knobs(option, false, knobs, sizeof knobs), beyond, chosen, option->seeds, cost);
   if (option->deviation >= 0 && !(option->deviation > SAMPLE_ROUNDING * fabs(option->mean)))
     words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: %s", option->n,
                 option->share ? "the error holds that so many may miss a rare outcome" : "more of them tell no more");
@@ -990,14 +1270,10 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     words_print(out, before, "%s", accuracy->widest_point);
   if (!in_time)
     return;
-  bool open[2];
-  const double half = accuracy_least(accuracy, accuracy->point_s / 2, &open[0]),
-               twice = accuracy_least(accuracy, accuracy->point_s * 2, &open[1]);
-  char in_half[96] = "no result";
-  if (!isnan(half))
-    snprintf(in_half, sizeof in_half, "\xc2\xb1 %.2g%s%s", half, unit, or_more[open[0]]);
-  words_print(out, before, "In half of the time: %s; in twice: \xc2\xb1 %.2g%s%s", in_half, twice, unit,
-              or_more[open[1]]);
+  char in_half[96], in_twice[96];
+  words_print(out, before, "In half of the time: %s; in twice: %s",
+              show_least(accuracy, accuracy->point_s / 2, unit, in_half, sizeof in_half),
+              show_least(accuracy, accuracy->point_s * 2, unit, in_twice, sizeof in_twice));
 }
 
 static status alternatives_json(const struct accuracy *accuracy, const struct campaign *campaign, char **json,

@@ -9,6 +9,16 @@
 
 enum { ACCURACY_MARKS = 160 };
 
+/* What a knob leaves of an error (struct ask_part). */
+struct accuracy_part {
+  const struct knob *knob;
+  bool open; /* no limit is seen, and what may lie beyond the levels is no small part of what is allowed */
+  double error, left_by_seeds;
+  double beyond; /* NaN: not known */
+  double finest; /* setting of the finest level; 0: none */
+  int64_t seeds;
+};
+
 /* A way to run the campaign: one level of one knob, all other inputs as in the campaign's scene. */
 struct accuracy_option {
   char knob[64], setting[64];
@@ -16,8 +26,9 @@ struct accuracy_option {
   bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
   bool open;         /* the error is no bound */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
-  double settled;    /* share of what the knob leaves there that more seeds leave: the middle of its interval */
   int64_t point;     /* in the store */
+  struct accuracy_part part[LIMITS_STUDY_KNOBS]; /* of the error, largest first */
+  size_t part_count;
   double beyond;    /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
                        the option is chosen for a time only. Else 0 */
   double mean;      /* of an extrapolated one that of the finest level with runs */
@@ -35,32 +46,15 @@ struct accuracy_option {
                                  study: cut"; "": none */
 };
 
-/* What is known of a knob of resolution. */
-struct accuracy_knob {
-  const struct knob *knob;
-  bool open;      /* no limit is seen at the scene's own setting */
-  double settled; /* share of what it leaves there that more seeds leave */
-  double beyond;  /* what the slowest law leaves beyond the finest level; NaN: not known */
-  double value;   /* the finest level with runs; 0: none */
-  double part;    /* of the error of the option `reference`, with what is beyond */
-};
-
 struct accuracy {
   struct accuracy_option *options; /* owned; by cpu_s, for a time by total; then those that do not reach it, by error */
   size_t count;
   double point_s; /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
   size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does. All
                      are in the order of convergence_order() */
-  struct accuracy_knob knob[LIMITS_STUDY_KNOBS];
-  size_t knob_count;
-  const struct accuracy_knob *open;   /* without a limit, of these the one with the largest part; NULL: none */
-  const struct accuracy_knob *widest; /* that has finer levels, with the largest part; NULL: none */
-  double middle;                      /* of the error of the option `reference`: what more seeds leave */
+  char advice[1600];  /* how to reach the accuracy, where no option does */
   char marked[512];   /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
   char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
-  char knobs[128];    /* what the errors hold: "grains, time_step" */
-  char levels[2000];  /* with runs: "grains=0.01,0.005 time_step=0.4,0.2" */
-  char unusual[256];  /* knobs among these that have other levels than their own: "grains,time_step"; "": none */
   char studied[300];  /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
   char
       widest_point[500]; /* a sentence on another studied point at which the chosen setting is farthest off; "": none */

@@ -45,7 +45,7 @@ static const struct {
      "+ half width, which is no bound: >=). No difference seen: runs of equal seed are equal at all levels, which adds "
      "nothing; how many other runs may differ is part of the interval over seeds."},
     {"frontier",
-     "best: no other level of the table has as small an error for less time, or a smaller one for as little; "
+     "best: no other studied level of the scene has as small an error for less time, or a smaller one for as little; "
      ">= counts as its number."},
 };
 enum { LEGEND = sizeof legend / sizeof legend[0] };
@@ -253,22 +253,30 @@ static status print_sentence(const struct printing *printing, size_t from, size_
     return STATUS_OK;
   const struct study_ladder *ladder = &study->ladder[from + knob];
   const struct convergence_row *told = &found[knob].rows[level];
-  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT], setting[STUDY_SETTING];
+  char label[CHARTS_LABEL], text[UNCERTAINTY_TEXT], setting[STUDY_SETTING], unit[64] = "";
   charts_label(study->quantity[quantity].name, label);
+  if (study->quantity[quantity].row)
+    field_label_unit(ask_result_unit(study->quantity[quantity].row, ladder->base->kind->dimensions), unit, sizeof unit);
+  if (*unit)
+    text_append(label, sizeof label, " (%s)", unit);
   const struct sample_summary mean = summary_of(study, ladder, level, quantity);
   uncertainty_seeds(&mean, text);
   if (!told->base)
     fprintf(out, "%s = %s: ", told->knob, show_level(ladder, told, setting));
   fprintf(out, "%s = %s.", label, text);
   if (isfinite(told->error))
-    fprintf(out, " Error of the resolution: %s", study_show_error(told->error, told->at_least, text));
+    fprintf(out, " Error of the resolution: %s%s%s", study_show_error(told->error, told->at_least, text),
+            *unit ? " " : "", unit);
   double sum = 0;
   const char *before = " (";
-  ANSWER parts = ask_parts(printing->store, ladder->point[level], ladder->base->kind->results_version,
+  ANSWER parts = ask_parts(printing->store, ladder->base_point, ladder->base->kind->results_version,
                            study->quantity[quantity].column, error);
-  for (struct ask_part part; ask_parts_next(&parts, &part); before = ", ") {
+  for (struct ask_part part; ask_parts_next(&parts, &part);) {
+    if (part.point != ladder->point[level] || !(part.error > 0))
+      continue;
     fprintf(out, "%s%s %s", before, part.knob, study_show_error(part.error, part.open, text));
     sum += part.error;
+    before = ", ";
   }
   TRY(answer_end(&parts));
   if (sum > (1 + 1e-9) * told->error)
@@ -296,11 +304,10 @@ static status print_sentence(const struct printing *printing, size_t from, size_
   return STATUS_OK;
 }
 
-/* The limit with the scatter of the seeds in its interval. The distance of the scene's own level is known far better:
- * equal seeds have the same scatter at all levels. */
-static void print_seen(const struct study_ladder *ladder, const struct study_found *found, FILE *out) {
+/* The limit with the scatter of the seeds in its interval. The distances of the levels are known far better, as equal
+ * seeds have the same scatter at all of them: the table and the first line tell these. */
+static void print_seen(const struct study_found *found, FILE *out) {
   const struct convergence_limit_row *limit = &found->limit;
-  char setting[STUDY_SETTING], text[UNCERTAINTY_TEXT];
   fprintf(out, "limit %.5g (%.5g to %.5g, seeds included), mean over laws of order %.2g to %.2g (best: %.2g); ",
           limit->limit.value, limit->limit.low, limit->limit.high, limit->order.low, limit->order.high,
           limit->order.value);
@@ -309,11 +316,6 @@ static void print_seen(const struct study_ladder *ladder, const struct study_fou
             "%.5g to %.5g by the laws of one power alone: the levels do not exclude that two errors cancel here, and "
             "more seeds or more levels may; ",
             limit->one_power.low, limit->one_power.high);
-  for (size_t l = 0; l < found->count; l++)
-    if (found->rows[l].base && found->rows[l].resolution > 0 && !found->rows[l].open)
-      fprintf(out, "%s * is at most %s from its limit, equal seeds compared; ",
-              show_level(ladder, &found->rows[l], setting),
-              study_show_error(found->rows[l].resolution, found->rows[l].open, text));
 }
 
 static bool was_run(const struct study *study, const struct study_ladder *ladder, size_t level) {
@@ -368,7 +370,10 @@ static status print_missing(const struct printing *printing, const struct study_
   if (*ran && *words)
     fprintf(out, "; run, but results are withheld (%s):%s", words, ran);
   else if (*ran)
-    fprintf(out, "; run, but without a usable result:%s", ran);
+    fprintf(out, "; run, but without a usable result:%s (%s)", ran,
+            printing->study->quantity[quantity].row
+                ? "`clast status` tells how runs ended, `clast explain` when the result is off"
+                : "too few fragments for an exponent: more seeds give more");
   if (*lone)
     fprintf(out, "; with results, but a comparison takes two levels with %" PRId64 " seeds:%s",
             printing->study->rule.first_seeds, lone);
@@ -384,7 +389,7 @@ static status print_limit(const struct printing *printing, const struct study_la
   const char *before = "";
   fprintf(out, "%s: ", limit->knob);
   if (limit->verdict == LIMIT_SEEN)
-    print_seen(ladder, found, out);
+    print_seen(found, out);
   else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING) {
     print_change(knob, found, out);
     fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
@@ -607,7 +612,7 @@ status study_print_picture(const struct study *study, const char *path, struct e
 
   char label[2][120], title[1200], point[512], y[CHARTS_LABEL], x[200], unit[64];
   snprintf(label[0], sizeof label[0], "levels of %s, mean over seeds with its 95 %% interval", knob->name);
-  snprintf(label[1], sizeof label[1], "law with its 95 %% band; at step 0 the limit, %.3g (%.3g to %.3g)",
+  snprintf(label[1], sizeof label[1], "law with its 95 %% band; at step 0 the limit, %.5g (%.5g to %.5g)",
            law.limit.value, law.limit.low, law.limit.high);
   const struct picture_curve curves[] =
       {{.label = label[0], .count = count, .mean = levels, .range = &range},

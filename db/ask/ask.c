@@ -496,6 +496,15 @@ static status find_command(struct store *store, long long id, const char *quanti
   return answer_end(&found);
 }
 
+/* The text of a question about the parts. */
+static char *of_parts(const char *question) {
+  char *text = NULL;
+  FILE *out = text_open(&text);
+  views_resolution_parts(out);
+  fputs(question, out);
+  return text_close_small(out, &text);
+}
+
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error) {
   *out = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED, .half_width = NAN};
@@ -531,12 +540,12 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   if (out->studied == 0)
     return STATUS_OK;
 
-  ANSWER knobs = answer_to(
-      store, error,
-      "SELECT group_concat(knob, ', ') FROM (SELECT DISTINCT knob FROM convergence"
-      "   WHERE quantity = %Q AND (resolution IS NOT NULL OR knob = 'settings')"
-      "   AND base_point_id IN (SELECT base_point_id FROM convergence WHERE %lld IN (0, point_id)) ORDER BY knob)",
-      quantity, id);
+  OWNED char *question = of_parts("SELECT group_concat(knob, ', ') FROM (SELECT knob FROM part WHERE quantity = ");
+  ANSWER
+  knobs = answer_to(store, error,
+                    "%s%Q AND error IS NOT NULL AND point_id IN (SELECT point_id FROM point_total WHERE runs > 0 AND "
+                    "%lld IN (0, point_id)) GROUP BY knob ORDER BY knob)",
+                    question, quantity, id);
   if (answer_next(&knobs))
     snprintf(out->knobs, sizeof out->knobs, "%s", answer_text(&knobs, 0));
   text_make_plain(out->knobs, "");
@@ -560,12 +569,16 @@ struct answer ask_convergence_levels(struct store *store, int64_t base_point, in
     sqlite3_str_appendf(columns, "%sc.\"%w\"", i ? ", " : "", name);
   }
   char *list = sqlite3_str_finish(columns); /* NULL, no memory, is an empty list: the question then fails */
+  OWNED char *told = NULL;
+  FILE *out = text_open(&told);
+  views_resolution_levels(out);
+  text_close_small(out, &told);
   return answer_to(
       store, error,
-      "SELECT %z, r.half_width, r.verdict, point_id FROM convergence c LEFT JOIN resolution r USING (point_id, "
-      "results_version, quantity) WHERE c.base_point_id = %lld AND c.results_version = %d AND "
+      "%s SELECT %z, t.half_width, t.verdict, c.point_id FROM convergence c LEFT JOIN told t USING (base_point_id, "
+      "results_version, quantity, knob, level) WHERE c.base_point_id = %lld AND c.results_version = %d AND "
       "c.quantity = %Q ORDER BY c.knob, c.level",
-      list, (long long)base_point, results_version, quantity);
+      told, list, (long long)base_point, results_version, quantity);
 }
 
 bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
@@ -586,23 +599,30 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
   return true;
 }
 
-struct answer ask_parts(struct store *store, int64_t point, int results_version, const char *quantity,
+struct answer ask_parts(struct store *store, int64_t base_point, int results_version, const char *quantity,
                         struct error *error) {
-  OWNED char *parts = NULL;
-  FILE *out = text_open(&parts);
-  views_resolution_parts(out);
-  text_close_small(out, &parts);
+  OWNED char *question = of_parts(
+      "SELECT point_id, knob, error, open, beyond, left_by_seeds, coarser, finest, seeds FROM "
+      "part WHERE point_id IN (SELECT point_id FROM convergence WHERE base_point_id = ");
   return answer_to(
       store, error,
-      "%s SELECT knob, error, open FROM part WHERE point_id = %lld AND results_version = %d AND quantity = "
-      "%Q AND error > 0 ORDER BY error DESC, knob",
-      parts, (long long)point, results_version, quantity);
+      "%s%lld UNION SELECT %lld) AND results_version = %d AND quantity = %Q ORDER BY point_id, error DESC, "
+      "knob",
+      question, (long long)base_point, (long long)base_point, results_version, quantity);
 }
 
 bool ask_parts_next(struct answer *answer, struct ask_part *part) {
   if (!answer_next(answer))
     return false;
-  *part = (struct ask_part){answer_text(answer, 0), answer_real(answer, 1), answer_integer(answer, 2) > 0};
+  *part = (struct ask_part){.point = answer_integer(answer, 0),
+                            .knob = answer_text(answer, 1),
+                            .error = answer_real(answer, 2),
+                            .open = answer_integer(answer, 3) > 0,
+                            .beyond = answer_real(answer, 4),
+                            .left_by_seeds = answer_real(answer, 5),
+                            .coarser = answer_integer(answer, 6),
+                            .finest = answer_text(answer, 7),
+                            .seeds = answer_integer(answer, 8)};
   return true;
 }
 

@@ -248,12 +248,18 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row);
 /* What one knob leaves of the error of a point. The parts of a point add up to its error, unless a share cannot move so
  * far. */
 struct ask_part {
+  int64_t point;
   const char *knob; /* until the next one */
-  double error;
-  bool open; /* no bound */
+  double error;     /* NaN: no run tells it */
+  bool open;        /* no bound */
+  double beyond; /* if open: what a law of order 0.5 leaves beyond the finest level, a guess; NaN: not known. Else 0 */
+  double left_by_seeds; /* of the error: the middle of its interval */
+  int64_t coarser;      /* levels with runs that are coarser than the finest one */
+  const char *finest;   /* the setting of that one, of the study with the finest level; "": none */
+  int64_t seeds;        /* of this study */
 };
-/* The parts of a point, largest first. */
-struct answer ask_parts(struct store *store, int64_t point, int results_version, const char *quantity,
+/* The parts of the scene that was studied as `base_point` and of its levels, by point, largest first. */
+struct answer ask_parts(struct store *store, int64_t base_point, int results_version, const char *quantity,
                         struct error *error);
 bool ask_parts_next(struct answer *answer, struct ask_part *part);
 

@@ -2,6 +2,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "db/store/views.h"
 #include "schemas/memory.h"
 
 static const char writing[] = "writing estimates";
@@ -168,14 +169,19 @@ status store_set_convergence(struct store *store, const struct store_convergence
 }
 
 status store_rank_convergence(struct store *store, struct error *error) {
+  OWNED char *rank = NULL;
+  FILE *out = text_open(&rank);
+  views_resolution_levels(out);
+  fputs("UPDATE convergence AS c SET error = t.half_width FROM convergence l LEFT JOIN told t\n"
+        "  USING (base_point_id, results_version, quantity, knob, level) WHERE (l.base_point_id, l.results_version,\n"
+        "    l.knob, l.quantity, l.level) = (c.base_point_id, c.results_version, c.knob, c.quantity, c.level);\n"
+        "UPDATE convergence AS c SET frontier = ifnull(cpu + error < 9e999, 0) AND NOT EXISTS (SELECT 1 FROM "
+        "convergence o\n"
+        "  WHERE (o.base_point_id, o.results_version, o.quantity) = (c.base_point_id, c.results_version, c.quantity)\n"
+        "    AND o.error <= c.error AND o.cpu <= c.cpu AND (o.error < c.error OR o.cpu < c.cpu))",
+        out);
+  text_close_small(out, &rank);
   TRY(store_begin(store, error));
-  static const char rank[] =
-      "UPDATE convergence AS c SET error = r.half_width FROM convergence l LEFT JOIN resolution r\n"
-      "  USING (point_id, results_version, quantity) WHERE (l.base_point_id, l.results_version, l.knob, l.quantity,\n"
-      "    l.level) = (c.base_point_id, c.results_version, c.knob, c.quantity, c.level);\n"
-      "UPDATE convergence AS c SET frontier = cpu + error IS NOT NULL AND NOT EXISTS (SELECT 1 FROM convergence o\n"
-      "  WHERE (o.base_point_id, o.results_version, o.quantity) = (c.base_point_id, c.results_version, c.quantity)\n"
-      "    AND o.error <= c.error AND o.cpu <= c.cpu AND (o.error < c.error OR o.cpu < c.cpu))";
   const status code = sql_execute(store->db, rank, writing_study, error);
   return store_end(store, code, 1, error);
 }

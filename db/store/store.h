@@ -132,8 +132,8 @@ struct store_convergence {
 };
 /* Replaces the stored study of this scene, knob and quantity. Joins the open batch. */
 status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
-/* After studies: `error` of all levels is that of the view resolution, `frontier` that of convergence_frontier() over
- * all levels of a scene and quantity. */
+/* After studies: `error` of all levels is the sum of their parts. `frontier`: no other level of the scene and quantity
+ * has an error and a processor time that are both not larger, and one of them smaller. */
 status store_rank_convergence(struct store *store, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */

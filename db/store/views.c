@@ -346,28 +346,65 @@ static void write_shares(const struct field_table *table, const char *before, FI
   }
 }
 
-/* The one place that knows the error of a setting; every screen asks it. For every point and quantity with a study: the
- * sum over the knobs of the error that each knob leaves, taken at the point or, when the point is no level of the knob,
+/* Means of the shares that every run has, as in the view points: they bound the errors of these. */
+static void write_means(FILE *out) {
+  const char *before = "";
+  for (size_t i = 0; i < outcome_table.count; i++) {
+    const char *name = outcome_table.rows[i].path; /* as its column */
+    if (!field_is_share(&outcome_table.rows[i]))
+      continue;
+    fprintf(out, "%sSELECT point_id, r.results_version, '%s' AS quantity, avg(iif(", before, name);
+    if (!write_withheld(NULL, name, out))
+      fputs("0", out);
+    fprintf(
+        out,
+        ", NULL, r.%1$s)) AS mean\n    FROM run r JOIN point p USING (point_id) WHERE r.counts = 1 AND point_id IN\n"
+        "      (SELECT point_id FROM convergence WHERE quantity = '%1$s') GROUP BY point_id, r.results_version",
+        name);
+    before = "\n  UNION ALL ";
+  }
+}
+
+/* The one place that knows the error of a setting; every screen asks it. For every point and quantity with a study the
+ * parts of the knobs: the error that each knob leaves, taken at the point or, when the point is no level of the knob,
  * at the scene's own setting. Where that setting has no error, the largest one of the knob's levels counts and is no
  * bound. Named settings: the error of their reference, which takes the knobs at its own values, and how far they are
- * from it. No error of a share is larger than its distance from the farther end of 0 to 1; a level without runs counts
- * with the mean of the finest one. */
+ * from it. */
 void views_resolution_parts(FILE *out) {
   fputs("WITH share (quantity) AS (VALUES ", out);
   write_shares(&outcome_table, "", out);
   for (size_t i = 0; i < engine_count(); i++)
     write_shares(engine_at(i)->results, ", ", out);
-  fprintf(out, "),\n%s\n", views_resolution_sql);
+  fputs("),\nof_runs AS MATERIALIZED (", out);
+  write_means(out);
+  fprintf(out, "),\n%s", views_resolution_sql);
+}
+
+/* The sum of the parts with its verdict. No error of a share is larger than `most`, its distance from the farther end
+ * of 0 to 1. */
+static void write_bounded(const char *most, FILE *out) {
+  fprintf(
+      out,
+      "min(w.error, %1$s) AS half_width,\n  CASE WHEN w.error > %1$s THEN 'known' WHEN diverges THEN 'diverges' WHEN "
+      "NOT w.open THEN 'known'\n    WHEN w.error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict",
+      most);
+}
+
+static const char is_told[] = "w.error > 0 OR w.open < 2"; /* with a knob that never ran, at least 0 tells nothing */
+
+void views_resolution_levels(FILE *out) {
+  views_resolution_parts(out);
+  fputs(", told AS (SELECT c.base_point_id, c.knob, c.level, w.point_id, w.results_version, w.quantity, ", out);
+  write_bounded("iif(w.most < 9e999, coalesce(max(c.mean, 1 - c.mean), w.most), 9e999)", out);
+  fprintf(out, "\nFROM convergence c JOIN whole w USING (point_id, results_version, quantity) WHERE %s)\n", is_told);
 }
 
 static void write_resolution(struct view *view) {
   fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n", view->out);
   views_resolution_parts(view->out);
-  fputs("SELECT point_id, results_version, quantity, min(error, most) AS half_width,\n"
-        "  CASE WHEN error > most THEN 'known' WHEN diverges THEN 'diverges' WHEN NOT open THEN 'known'\n"
-        "    WHEN error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict\n"
-        "FROM whole WHERE error > 0 OR open < 2; -- with a knob that never ran, at least 0 tells nothing\n",
-        view->out);
+  fputs("SELECT point_id, results_version, quantity, ", view->out);
+  write_bounded("most", view->out);
+  fprintf(view->out, "\nFROM whole w WHERE %s;\n", is_told);
 }
 
 static void write_points(struct view *view) {

@@ -331,6 +331,11 @@ expect 0 "$clast" converge narrow.yaml --knob time_step,integrator --seeds 8 --w
 expect 65 "$clast" plan narrow.yaml
 grep -q '`clast converge narrow.yaml --knob [a-z_,]*time_step[a-z_,]* --max-seeds' err || fail "no knobs: $(cat err)"
 ok "advice keeps the knobs"
+# The number of runs that it tells is the one that the command computes; knobs without an interval are not in it.
+advice=$(tr '\n' ' ' <err | tr -s ' ' | grep -o 'which take [0-9]* more runs.*--seeds [0-9]*`')
+runs=$(grep -o 'take [0-9]* more' <<<"$advice" | tr -dc '0-9') advice=${advice#*clast }
+eval "expect 64 \"\$clast\" ${advice%\`*} --seconds 1e-6"
+says " take $runs more runs, about"
 
 # Levels without the scene's own grains: mean and seeds are those of the level that is told.
 sed 's/sharp/without/' sharp.yaml >without.yaml
@@ -345,6 +350,34 @@ assert mean == "%.4g" % there, (there, said)
 assert "--max-seeds 0" not in said, said
 PY
 ok "the mean of the level that is told"
+
+# Studies at other settings count with --set, too, as without it: the same settings have the same error, the same part
+# beyond it, and the same knobs.
+sed 's/^accuracy.*/accuracy: {within: 0.9}/; s/sharp/set/' sharp.yaml >set.yaml
+short=(--set fidelity.time_step='5e-07 s')
+expect 0 "$clast" converge set.yaml --knob time_step,stop --seeds 4 --within off -j 2 --quiet
+expect 0 "$clast" converge set.yaml "${short[@]}" --knob grains=1.4cm,1.2cm,1.069cm --seeds 4 --within off -j 2 --quiet
+python - <<'PY' # no limit is seen in stop
+import sqlite3
+db = sqlite3.connect("set.db")
+db.execute("update convergence set open = 1, resolution = 0.02, bias = 0.02 where knob = 'stop'")
+db.commit()
+PY
+expect 0 "$clast" plan set.yaml --no-trial --within 5s --json
+mv out without
+expect 0 "$clast" plan set.yaml "${short[@]}" --no-trial --within 5s --json
+python - <<'PY'
+import json
+(with_set,) = [a for a in json.load(open("out"))["alternatives"] if a["setting"] == "the scene's own"]
+(without,) = [a for a in json.load(open("without"))["alternatives"] if a["knob"] == "time_step" and float(a["setting"]) == 5e-7]
+assert without["beyond"] > 0, without
+for column in ("error", "known", "beyond", "mean"):
+    assert with_set[column] == without[column], (column, with_set, without)
+PY
+ok "one error with --set and without"
+expect 0 "$clast" run set.yaml "${short[@]}" --within 300ms -j 2
+same "$(tr -s ' \n' ' ' <err | grep -o 'resolution [>=0-9. ]*([a-z_, ]*)' | cut -d'(' -f2)" \
+  "$(tr -s ' \n' ' ' <err | grep -o '(resolution: [a-z_, ]*)' | cut -d' ' -f2- )" "knobs of the choice and of the end"
 
 # One setting has one error on every screen, also after a later study of other levels. The scene's own level is not
 # among these: it has no smaller error than finer ones, and is a bound only if the law tells it.
@@ -392,7 +425,7 @@ cell = ("" if errors[own][1] == "known" else ">= ") + "%.2g" % errors[own][0]
 for screen, line in (("table", r"grains +0.01069 m \*"), ("plan", "the scene's own"), ("estimates", r"(^| )%d  +\d+  +\d\.\d+ (±|≥|\()" % own)):
     (line,) = [found for found in open(screen) if re.search(line, found)]
     assert re.search("(^| )" + re.escape(cell) + "( |$)", line.rstrip()), (screen, line, cell)
-# best: of the table, and in the store of all levels of the scene, also after later studies.
+# best: of all levels of the scene in the store, also after later studies; the table tells the same.
 def check_best(levels):
     for a in levels:
         told = None not in (a["error"], a["cpu"])
@@ -401,7 +434,8 @@ def check_best(levels):
         assert a["frontier"] == (told and not beaten), a
 
 
-check_best(json.load(open("levels")))
+stored = dict(((k, s), f) for k, s, f in db.execute("select knob, setting, frontier from convergence where quantity = 'largest_fraction'"))
+assert all(a["frontier"] == stored[a["knob"], a["setting"]] for a in json.load(open("levels"))), stored
 db.row_factory = sqlite3.Row
 check_best(db.execute("select * from convergence where quantity = 'largest_fraction'").fetchall())
 sentence = re.search(r"^grains = (\S+) m: .* Error of the resolution: (\S+) ", " ".join(open("table").read().split()))
@@ -419,7 +453,9 @@ PY
 expect 0 "$clast" stats one.db --by fidelity.time_step --studies
 grep -Eq ' >= 0\.[0-9]+( |$)' out || fail "no >= in the column of the resolution"
 expect 0 "$clast" run one.yaml --within 300ms -j 2
-says "seeds a point: "; says ' (resolution: grains, settings, time_step)'
+says "seeds a point: "
+same "$(tr -s ' \n' ' ' <err | grep -o 'resolution [>=0-9. ]*([a-z_, ]*)' | cut -d'(' -f2)" \
+  "$(tr -s ' \n' ' ' <err | grep -o '(resolution: [a-z_, ]*)' | cut -d' ' -f2- )" "knobs of the choice and of the end"
 grep -q 'studied at' err && fail "the error of other points"
 # A study of an earlier program has no row of the own level. Then no setting with these grains has a bound or is chosen.
 python - <<'PY'
@@ -514,8 +550,17 @@ sed 's/within: 0.17/within: 0.03/' finer.yaml >tight.yaml
 expect 65 "$clast" plan tight.yaml --store finer.db
 says "More seeds are not likely to help: they narrow the interval of this error, and leave about 0.0"
 says "Finer levels of grains, which leaves most of it (0."
+# Runs tell that the finest grains are in doubt: finer ones are no choice, and no advice.
+expect 0 "$clast" plan tight.yaml --store finer.db --no-trial --within 10s
+prints "extrapolated"
+cp finer.db doubted.db
+sqlite3 doubted.db "update run set warnings = 'single' where point_id = (select point_id from convergence where reference)"
+expect 0 "$clast" plan tight.yaml --store doubted.db --no-trial --within 10s
+! grep -q extrapolated out || fail "a setting beyond a level in doubt is a choice: $(cat out)"
+expect 65 "$clast" plan tight.yaml --store doubted.db --no-trial
+! grep -q "Finer levels of grains" err || fail "finer levels in doubt are advised: $(cat err)"
 expect 0 "$clast" converge finer.yaml --knob grains --seeds 8 --max-seeds 8
-says "best: no other level of the table has as small an error" # the legend tells the columns that are shown
+says "best: no other studied level of the scene has as small an error" # the legend tells the columns that are shown
 # Levels whose runs are in doubt are no choice: `plan` says which and why, and with which input finer ones count.
 cat >coarse.yaml <<'YAML'
 name: coarse
@@ -576,7 +621,9 @@ says "1 point, 1 knob: the first 3 seeds of all levels take"
 expect 0 "$clast" converge each.yaml --set threshold.strain='3 %' --knob time_step=2us,1us,0.5us --seeds 4 --max-seeds 8 --store most.db
 says "seeds of all levels take 11 more runs, about"
 says "then more seeds until every bias is narrow (--within): at most 23 runs, about"
-prints "from its limit, equal seeds compared"
+error=$(tr '\n' ' ' <out | sed -n 's/.*Error of the resolution: \([^ ]*\) (time_step \([^ )]*\)).*/\1 \2/p')
+same "${error% *}" "${error#* }" "error of the only knob"
+! grep -q "from its limit" out || fail "the distance of the own level, told twice"
 { cat each.yaml && echo 'accuracy: {within: 0.9}'; } >wide.yaml
 expect 0 "$clast" plan wide.yaml --store one.db
 prints "this is known of point 2, strain 3 %; the others have errors"
@@ -683,4 +730,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 173
+done_after 186

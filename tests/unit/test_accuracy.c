@@ -326,7 +326,9 @@ TEST(an_own_level_that_did_not_run) {
     add_study(store, campaign, "time_step", coarser ? 4 : 5, levels[coarser]);
     OK(store_close(store, &error));
     OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
-    assert_true((accuracy.chosen < accuracy.count) == !coarser);
+    assert_true(accuracy.chosen < accuracy.count); /* a level has an error of its own */
+    for (size_t i = 0; coarser && i < accuracy.count; i++)
+      assert_true(!accuracy.options[i].own);
     if (!coarser) /* a level that is finer still was left out, too */
       assert_string_equal(accuracy.left_out, "time_step = 1e-6, 5e-7");
   }
@@ -383,6 +385,32 @@ TEST(a_finer_setting_that_would_be_marked_is_none) {
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "clast converge t.yaml --set fidelity.time_step='5e-07 s' --knob "
                                         "grains=0.016m,0.008m,0.004m,0.01069m --seeds 10`"));
+}
+
+/* A study of finer grains needs a shorter step. Where the store has it, it is not advised again. */
+TEST(an_advised_study_is_not_advised_again) {
+  static const struct level finer[] = {{"0.008", 0.02, 1e-4, 20, false, false, 0.008},
+                                       {"0.004", 0.01, 1e-4, 40, false, false, 0.004}};
+  struct campaign *own = campaign_of(HEAD "accuracy: {within: 0.001}\n"),
+                  *shorter = campaign_of(HEAD "set: {fidelity.time_step: 0.5 us}\naccuracy: {within: 0.001}\n");
+  struct store *store = NULL;
+  OK(store_open_writer(fixture_path(path, "again"), &store, NULL, 0, &error));
+  add_study(store, own, "grains", 2,
+            (const struct level[]){{"0.0112", 0.03, 1e-4, 5, true, false, 0.0112},
+                                   {"0.008", 0.02, 1e-4, 10, false, false, 0.008}});
+  OK(store_close(store, &error));
+  for (int studied = 0; studied < 2; studied++) {
+    assert_int_equal(accuracy_settle(own, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
+    assert_true((strstr(error.message, "clast converge t.yaml --set fidelity.time_step='5e-07 s' --knob grains=") !=
+                 NULL) == !studied);
+    assert_true((strstr(error.message, "`clast plan t.yaml --set fidelity.time_step='5e-07 s'` goes on from there") !=
+                 NULL) == studied);
+    OK(store_open_writer(path, &store, NULL, 0, &error));
+    add_study(store, shorter, "grains", 2, finer);
+    OK(store_close(store, &error));
+  }
+  campaign_free(own);
+  campaign_free(shorter);
 }
 
 /* A later study of the grains lacks the scene's own: no setting with these grains is known to be accurate, though the

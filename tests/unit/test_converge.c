@@ -425,10 +425,40 @@ TEST(a_level_has_the_errors_of_the_other_knobs) {
   assert_true(!row.base && !row.at_least && fabs(row.error - 0.09) < 1e-12);
   assert_false(ask_convergence_next(&levels, &row));
   assert_int_equal(answer_end(&levels), STATUS_OK);
-  /* No error of a share is larger than its distance from the farther end. */
+  /* No error of a share is larger than its distance from the farther end, by the mean of the runs beside it. */
   studied(store, point, "grains", 3, true, LIMIT_NOT_SEEN);
   OK(ask_resolution(store, finer, "largest_fraction", &found, &error));
-  assert_true(found.verdict == ASK_RESOLUTION_KNOWN && found.half_width == 1);
+  const double mean = number(store, "SELECT largest_fraction_mean FROM points WHERE point_id = 2");
+  assert_true(finer == 2 && mean > 0 && mean < 1);
+  assert_true(found.verdict == ASK_RESOLUTION_KNOWN && fabs(found.half_width - fmax(mean, 1 - mean)) < 1e-12);
+  OK(store_close(store, &error));
+}
+
+/* No error of a share is larger than its mean, or 1 less its mean, whichever is farther: the mean of the same row. */
+TEST(a_row_has_the_bound_of_its_own_mean) {
+  static const double means[] = {0.75, 0.7, 0.4}; /* of studies with 4, 8 and 3 seeds */
+  char path[64];
+  struct store *store = NULL;
+  OK(store_open_writer(fixture_path(path, "bound"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 1, 3, false, &error));
+  const int64_t point = integer(store, "SELECT min(point_id) FROM run");
+  struct convergence_row row;
+  field_defaults(&convergence_table, &row);
+  for (size_t i = 0; i < 3; i++) {
+    row.n = (const int64_t[]){4, 8, 3}[i];
+    row.mean = means[i];
+    row.resolution = 0.5;
+    add_level(store, 0, point, (const char *const[]){"grains", "stop", "time_step"}[i], &row, LIMIT_SEEN);
+  }
+  OK(store_rank_convergence(store, &error));
+  ANSWER levels = ask_convergence_levels(store, point, fixture_kind.results_version, "largest_fraction", &error);
+  for (size_t i = 0; i < 3; i++) {
+    assert_true(ask_convergence_next(&levels, &row));
+    assert_true(!row.at_least && fabs(row.error - fmax(row.mean, 1 - row.mean)) < 1e-12);
+  }
+  assert_int_equal(answer_end(&levels), STATUS_OK);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence WHERE abs(error - max(mean, 1 - mean)) < 1e-12"),
+                   3);
   OK(store_close(store, &error));
 }
 
