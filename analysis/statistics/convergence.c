@@ -1,4 +1,4 @@
-/* Bias, correlation and frontier of the levels of a knob, and the rows of a study. */
+/* Bias and correlation of the levels of a knob, and the rows of a study. */
 #include "analysis/statistics/convergence.h"
 
 #include <float.h>
@@ -91,14 +91,6 @@ static int order_of(double a, double b) {
 int convergence_order(double error, double cost, double other_error, double other_cost) {
   const int by_error = order_of(error, other_error);
   return by_error ? by_error : order_of(cost, other_cost);
-}
-
-void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier) {
-  for (size_t i = 0; i < n; i++) {
-    on_frontier[i] = isfinite(cost[i]) && isfinite(error[i]);
-    for (size_t j = 0; j < n && on_frontier[i]; j++)
-      on_frontier[i] = !(cost[j] <= cost[i] && convergence_order(error[j], cost[j], error[i], cost[i]) < 0);
-  }
 }
 
 static void resolve(struct convergence_row *level, const struct limit_range *distance) {

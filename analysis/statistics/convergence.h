@@ -123,9 +123,6 @@ double convergence_gain(double correlation, double cost_ratio);
 /* The order of settings: below 0 if the first is the better one, with less error, or as much for less cost. An error
  * that is no bound (>=), or as large as a share can move, counts as its number. NaN is the largest. */
 int convergence_order(double error, double cost, double other_error, double other_cost);
-/* Marks the Pareto frontier: a point is on it if no better one has a smaller or equal cost. A point with NaN is never
- * on it. */
-void convergence_frontier(size_t n, const double *cost, const double *error, bool *on_frontier);
 
 /* ---- rows of a study, as the store keeps them ---- */
 

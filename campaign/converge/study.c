@@ -180,23 +180,6 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   }
 }
 
-static void mark_frontier(size_t count, struct study_found *found) {
-  enum { MOST = LIMITS_STUDY_KNOBS * KNOB_LEVELS };
-  double cost[MOST] = {0}, error[MOST] = {0};
-  bool on[MOST];
-  size_t n = 0;
-  for (size_t i = 0; i < count; i++)
-    for (size_t l = 0; l < found[i].count; l++, n++) {
-      cost[n] = found[i].rows[l].cpu;
-      error[n] = found[i].rows[l].error;
-    }
-  convergence_frontier(n, cost, error, on);
-  n = 0;
-  for (size_t i = 0; i < count; i++)
-    for (size_t l = 0; l < found[i].count; l++)
-      found[i].rows[l].frontier = on[n++];
-}
-
 /* Skewness, and the two modes of a level that has two. */
 static void find_shapes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
   for (size_t l = 0; l < found->count; l++) {
@@ -232,8 +215,8 @@ status study_errors(const struct study *study, size_t from, size_t quantity, str
           continue;
         row->error = stored.error;
         row->at_least = stored.at_least;
+        row->frontier = stored.frontier;
       }
-  mark_frontier(count, found);
   return answer_end(&levels);
 }
 

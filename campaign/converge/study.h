@@ -81,8 +81,7 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
 /* The same of all ladders of one scene, beginning with ladder `from`; `found` has LIMITS_STUDY_KNOBS elements. Returns
  * the number of ladders. */
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found);
-/* Fills these members: the errors are those of the store, to which all studies of the scene add; the frontier is over
- * the ladders of this study. */
+/* Fills these members with those of the store, to which all studies of the scene add. */
 status study_errors(const struct study *study, size_t from, size_t quantity, struct store *store, size_t count,
                     struct study_found *found, struct error *error);
 

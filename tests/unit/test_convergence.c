@@ -50,13 +50,6 @@ TEST(correlations) {
   NEAR(1 / gain, pow(sqrt(1.0 / 36) + sqrt(0.1 * 35 / 36), 2), 1e-12);
 }
 
-TEST(frontiers) {
-  const double cost[6] = {1, 2, 3, 4, 2, 0.5}, errors[6] = {5, 3, 3, 1, 4, NAN};
-  bool on[6];
-  convergence_frontier(6, cost, errors, on);
-  assert_true(on[0] && on[1] && !on[2] && on[3] && !on[4] && !on[5]);
-}
-
 TEST(resolutions) {
   struct convergence_row level[3] = {{.step = 4, .mean = 0.5, .bias = -0.1, .bias_half_width = 0.02},
                                      {.step = 2, .mean = 0.56, .bias = -0.04, .bias_half_width = 0.01},

@@ -127,10 +127,6 @@ static void of_pairs(void) {
   for (double w = 0.01; w < 2; w *= 3)
     SAY("gain", convergence_break_even(w), convergence_gain(0.2, w), convergence_gain(0.99, w),
         convergence_gain(-0.9, w));
-  const double cost[] = {1, 2, 2, 3, 5, NAN, 4}, errors[] = {9, 4, 4, 5, 1, 0, NAN};
-  bool on[7];
-  convergence_frontier(7, cost, errors, on);
-  SAY("frontier", on[0], on[1], on[2], on[3], on[4], on[5], on[6]);
 }
 
 /* ---- ladders ---- */
