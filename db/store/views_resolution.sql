@@ -1,6 +1,9 @@
+-- A newer SQLite takes no more than a thousand uses of such tables in a question, with those inside of them: what needs
+-- the keys alone takes `studied`.
+studied AS (SELECT * FROM convergence WHERE (resolution IS NOT NULL OR open) AND knob <> 'settings'),
 row AS MATERIALIZED (SELECT *, coalesce(step, 1.0 / setting) AS size, -- numbers without a step: finer is larger
     abs(coalesce(distance, bias)) / resolution AS middle -- of its interval: what more seeds leave, as a share
-  FROM convergence WHERE (resolution IS NOT NULL OR open) AND knob <> 'settings'),
+  FROM studied),
 finest AS MATERIALIZED (SELECT * FROM row WHERE reference AND n > 0),
 -- What a law of order 0.5 leaves beyond the finest level, by the changes from coarser ones.
 past AS MATERIALIZED (SELECT base_point_id, results_version, quantity, knob, count(*) AS coarser,
@@ -20,20 +23,20 @@ of_knob AS (SELECT base_point_id, results_version, quantity, knob, max(iif(base,
     coalesce(min(iif(n > 0, size, NULL)), 9e999) AS finest
   FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)
   GROUP BY base_point_id, results_version, quantity, knob),
-asked AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id, false AS named FROM level
+asked AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id, false AS named FROM studied
   UNION ALL SELECT base_point_id, results_version, quantity, point_id, true FROM convergence
     WHERE knob = 'settings' AND reference),
 knob_path AS MATERIALIZED (SELECT DISTINCT l.base_point_id, l.knob, i.path
-  FROM level l JOIN point_input i ON i.point_id = l.point_id
+  FROM studied l JOIN point_input i ON i.point_id = l.point_id
     LEFT JOIN point_input b ON b.point_id = l.base_point_id AND b.path = i.path WHERE i.value IS NOT b.value),
 -- A point belongs to a study, too, if it differs from the scene studied in settings of knobs only.
 scene AS MATERIALIZED (SELECT point_id, group_concat(path || quote(value)) AS inputs
   FROM (SELECT point_id, path, value FROM point_input
-    WHERE point_id IN (SELECT point_id FROM level UNION SELECT base_point_id FROM level)
+    WHERE point_id IN (SELECT point_id FROM studied UNION SELECT base_point_id FROM studied)
       AND path NOT IN (SELECT path FROM knob_path) ORDER BY point_id, path)
   GROUP BY point_id),
 kin AS MATERIALIZED (SELECT p.point_id, s.base_point_id
-  FROM (SELECT DISTINCT base_point_id FROM level) s JOIN scene b ON b.point_id = s.base_point_id
+  FROM (SELECT DISTINCT base_point_id FROM studied) s JOIN scene b ON b.point_id = s.base_point_id
     JOIN scene p USING (inputs)),
 -- There, it has the error of a knob whose setting it has.
 of_kin AS (SELECT k.point_id, l.results_version, l.quantity, l.knob, l.resolution AS error, o.diverges,
@@ -75,9 +78,9 @@ named AS MATERIALIZED (SELECT s.point_id, s.results_version, s.quantity, r.point
     max(abs(s.bias) + s.bias_half_width) AS error, max(abs(s.bias)) AS left_by_seeds, max(s.n) AS seeds
   FROM convergence s JOIN convergence r USING (base_point_id, results_version, quantity, knob)
   WHERE s.knob = 'settings' AND r.reference AND NOT s.base AND NOT s.reference AND s.bias_half_width IS NOT NULL
-    AND (r.point_id, r.results_version, r.quantity) IN (SELECT point_id, results_version, quantity FROM left_by
-      WHERE error IS NOT NULL)
-    AND (s.point_id, s.results_version, s.quantity) NOT IN (SELECT point_id, results_version, quantity FROM level)
+    AND (r.base_point_id, r.results_version, r.quantity) IN (SELECT base_point_id, results_version, quantity
+      FROM studied WHERE resolution IS NOT NULL)
+    AND (s.point_id, s.results_version, s.quantity) NOT IN (SELECT point_id, results_version, quantity FROM studied)
   GROUP BY s.point_id, s.results_version, s.quantity),
 part AS (SELECT * FROM left_by
     WHERE (point_id, results_version, quantity) NOT IN (SELECT point_id, results_version, quantity FROM named)
