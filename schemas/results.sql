@@ -1158,7 +1158,7 @@ INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over r
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution_verdict', NULL, 'known, no-difference, at-least, diverges, or not-studied: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard deviation between runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
@@ -1184,7 +1184,7 @@ INSERT INTO column_doc VALUES ('points', 'fragment_count_mean', '1', 'mean over 
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution', '1', 'how far finer settings may move the mean (view resolution): Fragments of any size, single grains (dust) included.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Fragments of any size, single grains (dust) included.', 0);
+INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution_verdict', NULL, 'known, no-difference, at-least, diverges, or not-studied: Fragments of any size, single grains (dust) included.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_sd', '1', 'standard deviation between runs: Fragments of any size, single grains (dust) included.', 0);
 
@@ -1202,7 +1202,7 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean ove
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', NULL, 'known, no-difference, at-least, diverges, or not-studied: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard deviation between runs: Mass of the largest fragment over the total mass, M_1/M: that of all discs (dem), or of the target without the projectile (sph).', 0);
 
@@ -1220,13 +1220,13 @@ INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean 
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, no-difference, at-least, diverges, or not-studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', NULL, 'known, no-difference, at-least, diverges, or not-studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_weak', 'kg', '1: too few runs of this kind for the interval of this share: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_weak', '1', '1: too few runs of this kind for the interval of this share: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1). dem: kg/m.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, not surplus, not excluded', 0);
 
@@ -1246,7 +1246,7 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_mean', '1', 'mean over
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution_verdict', '1', 'known, no-difference, at-least, diverges, or not-studied: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution_verdict', NULL, 'known, no-difference, at-least, diverges, or not-studied: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_sd', '1', 'standard deviation between runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 

@@ -175,10 +175,11 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
     struct bin *bin = &bins[(*count)++];
     *bin = (struct bin){.low = pairs[from][0], .high = pairs[i][0], .n = in};
     for (size_t k = from; k <= i; k++) {
-      bin->x += pairs[k][0] / (double)in;
+      bin->x += pairs[k][0];
       bin->above += pairs[k][1] > find->level;
       bin->doubts.doubtful += pairs[k][2] > 0;
     }
+    bin->x /= (double)in; /* a sum of parts of equal places at an end may lie beyond it */
     bin->mean = sample_summarise(in, values, 0.95);
     sample_in_range(&bin->mean, &range, 0.95);
     from = i + 1;

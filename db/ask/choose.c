@@ -57,19 +57,22 @@ static status choose_campaigns_alone(struct store *store, struct error *error) {
   return STATUS_OK;
 }
 
-/* The view runs, with the inputs of axes also under their short names, as --by takes them: ", threshold_strain AS
- * strain", where no column and no other axis has that name. */
+/* Before the columns of the view runs, the inputs of axes under their short names, as --by takes them and tables show
+ * them: "threshold_strain AS strain, ". A short name that an engine's result has, too, means the input; one of two
+ * axes, or of another column, means none. */
 static status write_short_names(struct store *store, sqlite3_str *columns, struct error *error) {
   ANSWER
   names = answer_to(store, error,
-                    "WITH RECURSIVE known AS (SELECT name FROM pragma_table_info('runs')),"
-                    " tail AS (SELECT column_name, iif(path LIKE '%%.name', substr(column_name, 1, length(column_name)"
-                    "   - 5), column_name) AS name FROM main.axis WHERE column_name IN known UNION ALL"
-                    "   SELECT column_name, substr(name, instr(name, '_') + 1) FROM tail WHERE instr(name, '_'))"
-                    " SELECT min(column_name), name FROM tail WHERE name NOT IN known GROUP BY name"
-                    " HAVING count(DISTINCT column_name) = 1");
+                    "WITH RECURSIVE known AS (SELECT name FROM pragma_table_info('runs') WHERE name NOT IN"
+                    "   (SELECT column_name FROM column_doc WHERE table_name GLOB 'result_*') OR name IN"
+                    "   (SELECT column_name FROM main.axis)),"
+                    " tail AS (SELECT column_name, iif(path LIKE '%%.name', substr(path, 1, length(path) - 5), path)"
+                    "   AS name FROM main.axis WHERE column_name IN known UNION ALL"
+                    "   SELECT column_name, substr(name, instr(name, '.') + 1) FROM tail WHERE instr(name, '.'))"
+                    " SELECT min(column_name), replace(name, '.', '_') AS short FROM tail WHERE short NOT IN known"
+                    " GROUP BY short HAVING count(DISTINCT column_name) = 1");
   while (answer_next(&names))
-    sqlite3_str_appendf(columns, ", \"%w\" AS \"%w\"", answer_text(&names, 0), answer_text(&names, 1));
+    sqlite3_str_appendf(columns, "\"%w\" AS \"%w\", ", answer_text(&names, 0), answer_text(&names, 1));
   return answer_end(&names);
 }
 
@@ -82,15 +85,16 @@ static status choose_runs(struct store *store, const char *where, struct error *
   const status listed = write_short_names(store, columns, error);
   short_names = sqlite3_str_finish(columns);
   TRY(listed);
-  ANSWER alone = answer_to(store, error, "SELECT run_id FROM (SELECT *%s FROM runs) WHERE %s", short_names, where);
+  ANSWER alone = answer_to(store, error, "SELECT run_id FROM (SELECT %s* FROM runs) WHERE %s",
+                           short_names ? short_names : "", where);
   TRY(answer_end(&alone));
   TRY(sql_execute(store->db, "CREATE TEMP TABLE chosen_run (run_id INTEGER PRIMARY KEY)", doing, error));
   TRY(sql_prepare(store->db, "INSERT INTO temp.chosen_run VALUES (?1)", &insert, doing, error));
   ANSWER
   runs = answer_to(
       store, error,
-      "SELECT run_id FROM (SELECT *%s FROM runs) WHERE point_id IN (SELECT point_id FROM temp.chosen_point) AND (%s\n)",
-      short_names, where);
+      "SELECT run_id FROM (SELECT %s* FROM runs) WHERE point_id IN (SELECT point_id FROM temp.chosen_point) AND (%s\n)",
+      short_names ? short_names : "", where);
   while (answer_next(&runs)) {
     sqlite3_bind_int64(insert, 1, answer_integer(&runs, 0));
     TRY(sql_run(insert, doing, error));

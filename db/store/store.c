@@ -565,10 +565,9 @@ static status check_version(const struct store *store, int version, struct error
   if (schema_is_complete(store->db))
     return STATUS_OK;
   return status_fail(error, STATUS_CONTENT,
-                     "%s was written by an older clast (store version %d, now %d) and lacks columns. Run its campaign "
-                     "once more, or merge another store into it (`clast merge FILE OTHER`): opening for writing adds "
-                     "them.",
-                     store->path, version, SCHEMA_VERSION);
+                     "%s was written by an older clast and lacks columns. Run its campaign once more, or merge another "
+                     "store into it (`clast merge FILE OTHER`): opening for writing adds them.",
+                     store->path);
 }
 
 static status open_readable(struct store *store, struct error *error) {

@@ -31,7 +31,8 @@ INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES
   ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied'),
   ('resolution', 'verdict', NULL, 'known: half_width is a bound, which can be as large as the result; no-difference: all runs of the settings are equal; at-least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge');
 INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning)
-  SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning
+  SELECT 'points', d.column_name || s.column1,
+    CASE s.column1 WHEN '_weak' THEN '1' WHEN '_resolution_verdict' THEN NULL ELSE d.unit END, s.column2 || d.meaning
   FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '),
     ('_se', 'standard error of the mean: '),
     ('_hw95', 'half width of the 95 % confidence interval of the mean; NULL: one run, or all are equal to 14 digits: '),

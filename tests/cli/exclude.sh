@@ -162,6 +162,11 @@ expect 64 "$clast" stats one.db --where "no_such > 1"
 says "no such column: no_such"
 same "$("$clast" stats one.db --where "strain > 0.02" --csv 2>/dev/null)" \
   "$("$clast" stats one.db --where "threshold_strain > 0.02" --csv 2>/dev/null)" "a short name"
+# A result that has the name of a varied input, up to rounding: the input, as in the tables.
+printf '%s\n' 'name: shot' 'scene: disruption' 'set: {fidelity.particles: 400, fidelity.projectile_spacing: 0.3}' \
+  'vary: {impact.specific_energy: [1.1 kJ/kg, 2.3 kJ/kg, 3.7 kJ/kg]}' 'seeds: {per_point: 2}' 'store: shot.db' >shot.yaml
+expect 0 "$clast" run shot.yaml -j 2 --quiet # with warnings of few particles
+same "$("$clast" query shot.db --where "specific_energy in (1100, 2300, 3700)" "select count(*) from runs" --csv 2>/dev/null | tail -n 1)" 6 "runs by their input"
 expect 64 "$clast" stats one.db --where "threshold.strain > 0.02"
 says "The view runs has threshold_strain"
 expect 64 "$clast" stats one.db --where "strain = 5%"
@@ -234,4 +239,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 121
+done_after 123

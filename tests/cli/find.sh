@@ -222,4 +222,10 @@ expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg 
 prints "2 deg, 3 deg, 4 deg, 5 deg, 6 deg"
 expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --max-runs 20 --store set.db
 tr '\n' ' ' <err | grep -qE "'threshold.angle=[0-9.]+ deg'" || fail "the study advised is in other units: $(cat err)"
-done_after 65
+# A picture has the point of the bracket's end, also with nine runs there.
+printf '%s\n' 'name: ex log' 'scene: disc-explosion' 'set: {body.diameter: 7 cm}' 'vary: {charge.energy: [0.2 kJ/m, 10 kJ/m]}' \
+  'seeds: {per_point: 2}' 'store: exlog.db' >exlog.yaml
+expect 0 "$clast" find exlog.yaml -Q second_fraction --level 0.12 --within '15 %' --max-runs 100 --quiet --picture e.svg --keep-script
+grep -q '^10 0\.' e.dat && ! grep -q '^NaN [0-9]' e.dat || fail "the end of the bracket is not drawn: $(cat e.dat)"
+ok "a picture has every place"
+done_after 67
