@@ -107,8 +107,9 @@ static void write_sentence(const struct find *find, char text[SENTENCE]) {
         most = fmax(most, find->x[i]);
       }
     text_append(text, SENTENCE,
-                "%s is %s %s for %s from %s to %s%s: no crossing in the bracket (95 %%, from all %zu runs).", subject,
-                found->kind == CROSSING_ABOVE ? "above" : "below", level, input, show(find, least, low),
+                "%s is %s %s for %s from %s to %s%s: no crossing in the bracket (95 %%, from all %zu runs). "
+                "A rise and a fall between the values that ran may be missed.",
+                subject, found->kind == CROSSING_ABOVE ? "above" : "below", level, input, show(find, least, low),
                 show(find, most, high), mark, found->n);
     break;
   case CROSSING_SEVERAL:
