@@ -183,21 +183,29 @@ const char *design_axis_print(const struct design_axis *axis, const struct field
   return text;
 }
 
+/* The last word of the axis' path, "material" of "target.material.name", as tables call it. */
+static const char *word_of(const struct design_axis *axis, char path[FIELD_TEXT_SIZE]) {
+  field_copy_text(path, axis->row->path);
+  char *word = strrchr(path, '.');
+  if (word && axis->row->kind == FIELD_TEXT && strcmp(word, ".name") == 0) {
+    *word = '\0';
+    word = strrchr(path, '.');
+  }
+  return word ? word + 1 : path;
+}
+
 const char *design_axis_show_point(size_t count, const struct design_axis *axes, const void *inputs, char *text,
                                    size_t size) {
   *text = '\0';
   for (size_t i = 0; i < count; i++) {
     struct field_value value;
-    char shown[VALUE_SIZE], path[FIELD_TEXT_SIZE];
-    field_copy_text(path, axes[i].row->path);
-    char *word = strrchr(path, '.');
-    if (word && axes[i].row->kind == FIELD_TEXT && strcmp(word, ".name") == 0) { /* "material", as tables call it */
-      *word = '\0';
-      word = strrchr(path, '.');
-    }
+    char shown[VALUE_SIZE], path[FIELD_TEXT_SIZE], other[FIELD_TEXT_SIZE];
+    const char *word = word_of(&axes[i], path);
+    for (size_t k = 0; k < count; k++)
+      if (k != i && strcmp(word, word_of(&axes[k], other)) == 0)
+        word = path; /* target.material and projectile.material */
     field_get(axes[i].row, inputs, &value);
-    text_append(text, size, "%s%s %s", i ? ", " : "", word ? word + 1 : path,
-                design_axis_show(&axes[i], &value, shown, sizeof shown));
+    text_append(text, size, "%s%s %s", i ? ", " : "", word, design_axis_show(&axes[i], &value, shown, sizeof shown));
   }
   text_powers(text, size);
   return text;

@@ -694,11 +694,14 @@ status ask_points_label(struct store *store, struct store *units, int64_t point_
   ANSWER
   answer =
       answer_to(store, error,
-                "SELECT iif(path LIKE '%%.name', substr(path, 1, length(path) - 5), path), value, unit, written_unit "
-                "FROM point_input JOIN axis USING (path) WHERE point_id = %lld ORDER BY path DESC",
+                "WITH mine AS (SELECT *, replace(name, rtrim(name, replace(name, '.', '')), '') AS word FROM (SELECT "
+                "iif(path LIKE '%%.name', substr(path, 1, length(path) - 5), path) AS name, path, value, unit, "
+                "written_unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld)) "
+                "SELECT name, value, unit, written_unit, (SELECT count(*) FROM mine o WHERE o.word = m.word) = 1 "
+                "FROM mine m ORDER BY path DESC",
                 (long long)point_id);
   for (size_t used = 0; answer_next(&answer);) {
-    const char *path = answer_text(&answer, 0), *word = strrchr(path, '.');
+    const char *path = answer_text(&answer, 0), *word = answer_integer(&answer, 4) ? strrchr(path, '.') : NULL;
     struct ask_column column = {.factor = 1};
     snprintf(column.unit, sizeof column.unit, "%s", answer_text(&answer, 2));
     ANSWER other = {.code = STATUS_OK};

@@ -282,4 +282,11 @@ for length in $(seq 30); do
   grep -q 'error:[^ ]' err && fail "a blank is lost"
 done
 ok "blanks of wrapped errors"
-done_after 101
+# Rocks of both bodies have one last word: a point tells them by their paths.
+printf '%s\n' 'name: both' 'scene: disruption' 'set: {fidelity.particles: 1000}' \
+  'vary: {target.material.name: [basalt, granite], projectile.material.name: [nylon, steel]}' 'seeds: {per_point: 2}' \
+  'store: both.db' >both.yaml
+expect 0 "$clast" plan both.yaml --no-trial
+tr '\n' ' ' <out | grep -qE 'point, target.material (basalt|granite), projectile.material (nylon|steel):' || fail "the point is $(cat out)"
+ok "rocks of two bodies in the name of a point"
+done_after 103
