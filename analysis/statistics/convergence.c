@@ -116,7 +116,7 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
     else if (!level->reference) {
       level->resolution = fabs(level->bias) + level->bias_half_width;
       for (size_t finer = l + 1; endless && finer < count; finer++) /* of these, one may equal the finest by chance */
-        if (!(fabs(level->bias - levels[finer].bias) <= level->resolution) && levels[finer].n > 0)
+        if (fabs(level->bias - levels[finer].bias) > level->resolution && levels[finer].n > 0)
           level->resolution = fabs(level->bias - levels[finer].bias);
     } else
       level->resolution = endless ? coarser : 0;

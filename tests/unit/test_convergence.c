@@ -77,6 +77,15 @@ TEST(resolutions) {
   assert_true(isnan(level[0].resolution));
   assert_true(level[1].resolution == 0 && level[1].open && level[2].resolution == 0 && level[2].open);
 
+  /* One run of a level has no interval: its difference is no error. */
+  struct convergence_row one[] = {{.step = 1, .n = 8, .bias = 0.14, .bias_half_width = 0.03},
+                                  {.step = 0.5, .n = 1, .bias = 0.009, .bias_half_width = NAN},
+                                  {.step = 0.25, .n = 8, .reference = true}};
+  law = (struct limit_law){.verdict = LIMIT_TOO_FEW};
+  convergence_resolve(3, one, &law, (size_t[]){LIMIT_LEVELS, LIMIT_LEVELS, LIMIT_LEVELS}, false);
+  assert_true(isnan(one[1].resolution) && one[1].open);
+  NEAR(one[2].resolution, 0.17, 1e-12);
+
   /* Exact is exact: a choice has no step. */
   level[0].step = level[1].step = level[2].step = NAN;
   law.verdict = LIMIT_TOO_FEW;
