@@ -25,6 +25,57 @@ static void json_valid(sqlite3_context *context, int count, sqlite3_value **valu
   sqlite3_result_int(context, statement && sqlite3_step(statement) == SQLITE_ROW);
 }
 
+static void finalize(void *statement) {
+  sqlite3_finalize(statement);
+}
+
+static void close_own(void *own) {
+  sqlite3_close(own);
+}
+
+/* printf() and format(). Those of SQLite (3.40) answer NULL for a text beyond the limit, as if there were none; these
+ * end the query. The user data is a connection that has SQLite's own. They answer NULL for an empty text too: so the
+ * text that they make begins with an x, which is taken off. */
+static void format_within_limit(sqlite3_context *context, int count, sqlite3_value **values) {
+  if (count == 0 || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
+  sqlite3_stmt *statement = sqlite3_get_auxdata(context, 0);
+  const bool known = statement != NULL;
+  if (!known) {
+    sqlite3_str *sql = sqlite3_str_new(NULL);
+    sqlite3_str_appendall(sql, "SELECT format('x' || ?1");
+    for (int i = 2; i <= count; i++)
+      sqlite3_str_appendf(sql, ", ?%d", i);
+    char *text = sqlite3_mprintf("%z)", sqlite3_str_finish(sql));
+    if (text)
+      sqlite3_prepare_v2(sqlite3_user_data(context), text, -1, &statement, NULL);
+    sqlite3_free(text);
+  }
+  for (int i = 0; statement && i < count; i++)
+    sqlite3_bind_value(statement, i + 1, values[i]);
+  if (!statement || sqlite3_step(statement) != SQLITE_ROW)
+    sqlite3_result_error_nomem(context);
+  else if (sqlite3_column_type(statement, 0) == SQLITE_NULL)
+    sqlite3_result_error_toobig(context);
+  else if (sqlite3_column_bytes(statement, 0) > 1)
+    sqlite3_result_text(context, (const char *)sqlite3_column_text(statement, 0) + 1,
+                        sqlite3_column_bytes(statement, 0) - 1, SQLITE_TRANSIENT);
+  sqlite3_reset(statement);
+  if (!known)
+    sqlite3_set_auxdata(context, 0, statement, finalize);
+}
+
+static void bound_format(sqlite3 *db, const char *name) {
+  sqlite3 *own = NULL;
+  if (sqlite3_open(":memory:", &own) != SQLITE_OK) {
+    sqlite3_close(own);
+    return;
+  }
+  sqlite3_limit(own, SQLITE_LIMIT_LENGTH, LONGEST_VALUE);
+  sqlite3_create_function_v2(db, name, -1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS, own,
+                             format_within_limit, NULL, NULL, close_own);
+}
+
 void guard_connection(sqlite3 *db) {
   static const struct {
     int option, value;
@@ -37,6 +88,8 @@ void guard_connection(sqlite3 *db) {
     sqlite3_db_config(db, options[i].option, options[i].value, NULL);
   sqlite3_create_function(db, "json_valid", 1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS, NULL, json_valid,
                           NULL, NULL);
+  bound_format(db, "printf");
+  bound_format(db, "format");
   sqlite3_limit(db, SQLITE_LIMIT_LENGTH, LONGEST_VALUE);
   sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 0);
 }
