@@ -1238,8 +1238,8 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   if (option->total >= most_of(option->share, option->mean))
     words_print(out, before,
                 "Such an error says nothing of a share with the mean %.2g: no setting of the study is "
-                "near enough",
-                option->mean);
+                "near enough%s",
+                option->mean, in_time ? " in this time" : "");
   progress_duration(option->cpu_s * (in_time ? campaign->accuracy_time / accuracy->point_s : 1), time, sizeof time);
   progress_duration(campaign->accuracy_time, allowed, sizeof allowed);
   if (timed)
@@ -1318,7 +1318,7 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
                 "point_cpu: by the runs of the study. run_cost: against the smallest error");
     if (*accuracy.marked && accuracy.chosen < accuracy.count)
-      words_print(stdout, "", "Left out, as their runs are in doubt (!) where the scene's own are not: %s",
+      words_print(stdout, "", "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: %s",
                   accuracy.marked);
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(stdout, "",

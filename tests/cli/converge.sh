@@ -577,7 +577,7 @@ expect 65 "$clast" plan coarse.yaml --set 'fidelity.time_step=1 us'
 says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob" # one --set of an input
 sed 's/within: 0.01/within: 0.9/' coarse.yaml >wide.yaml
 expect 0 "$clast" plan wide.yaml --no-trial
-prints "Left out, as their runs are in doubt (!) where the scene's own are not: grains = 0.002 m (3 of 3"
+prints "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: grains = 0.002"
 # Two studies with common levels are one line of the status, in which a common run counts once.
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,3mm --seeds 3 --within off
 expect 0 "$clast" status coarse.db
