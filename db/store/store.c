@@ -564,10 +564,12 @@ static status check_version(const struct store *store, int version, struct error
     return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
   if (schema_is_complete(store->db))
     return STATUS_OK;
-  return status_fail(error, STATUS_CONTENT,
-                     "%s was written by an older clast and lacks columns. Run its campaign once more, or merge another "
-                     "store into it (`clast merge FILE OTHER`): opening for writing adds them.",
-                     store->path);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "%s was written by an older clast and lacks columns. Run its campaign once more (`clast converge`, if it "
+      "asks for an accuracy), or merge another store into it (`clast merge FILE OTHER`): opening for writing adds "
+      "them.",
+      store->path);
 }
 
 static status open_readable(struct store *store, struct error *error) {
