@@ -140,6 +140,23 @@ static void note_level(struct finding *finding, const struct knob *knob, const s
     text_append(unusual, sizeof finding->unusual, "%s%s", *unusual ? "," : "", row->knob);
 }
 
+/* Levels of the user's own, of the knob that had no time for some: " --knob grains=0.02m,0.01m,0.005m". Others: "". */
+static void own_levels(const struct finding *finding, char *text, size_t size) {
+  const char *left_out = finding->accuracy->left_out, *more = strstr(left_out, " = ");
+  char name[64], start[66];
+  snprintf(name, sizeof name, "%.*s", (int)strcspn(left_out, " "), left_out);
+  snprintf(start, sizeof start, "%s=", name);
+  const char *ran = strstr(finding->levels, start);
+  if (!more || !ran || !condition_has(finding->unusual, name))
+    return;
+  text_append(text, size, " --knob %.*s", (int)strcspn(ran, " "), ran);
+  for (more += 3; *more; more += strspn(more, ", ")) { /* "0.01, 0.005" */
+    text_append(text, size, ",%.*s%s", (int)strcspn(more, ","), more,
+                unit_of(finding->campaign, knob_of(finding->campaign, name)));
+    more += strcspn(more, ",");
+  }
+}
+
 static double work_of(const struct scene *scene) {
   return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
 }
@@ -996,9 +1013,11 @@ static status advise(struct finding *finding, struct error *error) {
   if (open && is_wide) /* finer levels of the open knob are not enough */
     return advise_widest(finding, widest, next, size, error);
   if (*accuracy->left_out && !by_resolution && !of_another) {
+    char levels[600] = "";
+    own_levels(finding, levels, sizeof levels);
     text_append(next, size,
-                "The study had no time for %s: `clast converge %s --quantity %s` goes on with it and takes its time",
-                accuracy->left_out, accuracy->path, finding->campaign->accuracy_quantity);
+                "The study had no time for %s: `clast converge %s --quantity %s%s` goes on with it and takes its time",
+                accuracy->left_out, accuracy->path, finding->campaign->accuracy_quantity, levels);
     return STATUS_OK;
   }
   return open ? advise_levels(finding, open, next, size, error)

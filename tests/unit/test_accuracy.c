@@ -331,6 +331,11 @@ TEST(an_own_level_that_did_not_run) {
       assert_true(!accuracy.options[i].own);
     if (!coarser) /* a level that is finer still was left out, too */
       assert_string_equal(accuracy.left_out, "time_step = 1e-6, 5e-7");
+    campaign->accuracy_within = 1e-3; /* the advice goes on with these levels, which are the user's own */
+    accuracy_clear(&accuracy);
+    OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
+    if (!coarser)
+      assert_non_null(strstr(accuracy.advice, "--knob time_step=8e-6s,4e-6s,2e-6s,1e-6s,5e-7s` goes on"));
   }
 }
 
