@@ -393,7 +393,8 @@ static status print_limit(const struct printing *printing, const struct study_la
   else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING) {
     print_change(knob, found, out);
     fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
-    fputs(" the three finest levels do not follow limit + a step^p with p from 0.5 to 3", out);
+    fprintf(out, " the three finest levels do not follow limit + a step^p with p from %g to %g", LIMIT_ORDER_LEAST,
+            LIMIT_ORDER_MOST);
     if (!seeds_are_equal(1, found))
       fprintf(out, " (if they did, chance would put them this far off in %s%s of studies)",
               limit->fit < 1e-5 ? "less than " : "", text_percent(fmax(limit->fit, 1e-5), (char[TEXT_PERCENT]){0}));

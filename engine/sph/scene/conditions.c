@@ -17,6 +17,7 @@ static bool is_porous(const struct sph_body_inputs *body) {
   return body->material.palpha.curve != SPH_CRUSH_NONE && body->material.palpha.distention > 1;
 }
 
+/* J: the energy put in without the common motion. */
 static double available(const struct sph_run *run) {
   const struct sph_ledger ledger = sph_system_ledger(run->system);
   return sph_run_energy_available(run, &ledger);
@@ -337,7 +338,7 @@ static double unfinished(const struct condition_run *r) {
   return broke ? (double)NAN : (sph_derived_arrival(in) + crossing) / r->outcome->time;
 }
 
-/* Energy of the overlap of bodies over the energy put in: they have not parted yet. */
+/* Energy of the overlap of bodies over what a collision can use: they have not parted yet. */
 AFTER(pressing, results->contact.energy / available(r->run))
 
 /* Pieces of bodies of which none cracks, over the number of bodies. */
@@ -650,8 +651,8 @@ static void both_slopes(const void *inputs, double both[2]) {
   "largest.dynamic_fraction largest.axis_middle largest.axis_short largest.speed"
 
 const struct condition sph_conditions[] = {
-    CONDITION("drift", .number = "the energy error, over the energy put in,", .bound = CONDITION_LARGEST_DRIFT,
-              .doubt = "numerical errors made or lost more than 1 % of the energy",
+    CONDITION("drift", .number = "the energy error, over the energy put in without the common motion,",
+              .bound = CONDITION_LARGEST_DRIFT, .doubt = "numerical errors made or lost more than 1 % of the energy",
               .reason = "our choice; the scene's fidelity.energy_bound may allow more",
               .remedy = "lower fidelity.cfl, or take more particles", .lasting = true, .after = drift),
     CONDITION("step", .number = "fidelity.cfl", .bound = 0.5, .doubt = "energy may drift",
@@ -660,9 +661,12 @@ const struct condition sph_conditions[] = {
               .doubt = "with little viscosity waves as short as the spacing grow, and the energy with them",
               .reason = "growth in a step, and measured (tests/verification/sph_time_step.md)",
               .remedy = "leave out fidelity.cfl", .before = courant_undamped),
-    CONDITION("clamped", .number = "the energy given to cold matter that is held at u = 0, over the energy put in,",
-              .bound = 0.01, .doubt = "the computation makes energy where matter would have less than none",
-              .reason = "as for the energy error", .remedy = "take more particles", .after = clamped),
+    CONDITION(
+        "clamped",
+        .number =
+            "the energy given to cold matter that is held at u = 0, over the energy put in without the common motion,",
+        .bound = 0.01, .doubt = "the computation makes energy where matter would have less than none",
+        .reason = "as for the energy error", .remedy = "take more particles", .after = clamped),
     CONDITION("held", .number = "the share of particle steps that held the density at its lower limit", .bound = 0.01,
               .doubt = "expanded matter keeps a density that it has not", .reason = "our choice",
               .remedy = "give a lower limit, or end the run earlier", .after = held),
@@ -865,7 +869,9 @@ const struct condition sph_conditions[] = {
               .bound = 1, .doubt = "the run ended before anything could break",
               .reason = "a body can break from the hit until a wave has crossed it",
               .remedy = "give a longer stop.end_time", .after = unfinished),
-    CONDITION("pressing", .number = "the energy of the overlap of bodies in contact, over the energy put in,",
+    CONDITION("pressing",
+              .number =
+                  "the energy of the overlap of bodies in contact, over the energy put in without the common motion,",
               .bound = 0.01,
               .doubt = "the bodies still press on each other: their speeds, and perhaps the damage, are not final",
               .reason = "spheres that have parted have 0, debris between two bodies has 5e-5",
