@@ -397,6 +397,35 @@ static void check_store(document_node *root, struct campaign *campaign) {
     document_report(store, "store", "%s", store_name_refused(campaign->store));
 }
 
+/* Is the axis of this key an own one: linked to no other, and no other to it? */
+static bool stands_alone(document_node *vary, const char *key) {
+  for (size_t i = 0; i < document_count(vary); i++) {
+    const char *name = NULL;
+    document_node *linked = key_of(document_item(vary, i, &name), "linked");
+    if (linked && (strcmp(name, key) == 0 || document_kind(linked) != DOCUMENT_SCALAR ||
+                   text_ends_in_words(key, document_scalar(linked), ".") ||
+                   text_ends_in_words(document_scalar(linked), key, ".")))
+      return false;
+  }
+  return true;
+}
+
+/* An input that the command line sets does not vary: the later layer wins whole. */
+static void drop_set_axes(document_node *set, document_node *vary, const struct scene *scene) {
+  struct error error;
+  for (size_t i = 0; set && vary && i < document_count(set); i++) {
+    const char *path = NULL, *key = NULL;
+    if (!document_is_put(document_item(set, i, &path)))
+      continue;
+    const struct field *row = field_find_in(scene->kind->inputs, path, scene->inputs, &error);
+    for (size_t a = document_count(vary); row && a-- > 0;) {
+      (void)document_item(vary, a, &key);
+      if (key && field_find_in(scene->kind->inputs, key, scene->inputs, &error) == row && stands_alone(vary, key))
+        document_graft_drop(vary, key);
+    }
+  }
+}
+
 void campaign_read(document_node *root, const char *folder, bool stored, struct campaign *campaign) {
   static const char *const also[] = {"vary", "set", "design", "keep", NULL};
   field_defaults(&campaign_table, campaign);
@@ -420,6 +449,8 @@ void campaign_read(document_node *root, const char *folder, bool stored, struct 
   if (campaign->keep != CAMPAIGN_KEEP_NONE && engine_has_fields(campaign->scene->kind, "fields files", &error))
     document_report_error(document_key(root, "keep"), "keep", &error);
   bool varied = true;
+  if (set && vary && document_kind(set) == DOCUMENT_MAPPING && document_kind(vary) == DOCUMENT_MAPPING)
+    drop_set_axes(set, vary, campaign->scene);
   if (file && vary)
     document_report(vary, "vary", "the columns of design.file are the varied inputs; leave vary out");
   if (file)

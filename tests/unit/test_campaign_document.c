@@ -229,6 +229,43 @@ TEST(one_input_is_set_once) {
   assert_int_equal(code, STATUS_USAGE);
 }
 
+/* The command line is the last layer: an input that it sets does not vary, and the store's document says so. */
+TEST(a_set_input_does_not_vary) {
+  static const struct {
+    const char *change, *kept;
+    double points; /* 0: refused */
+  } cases[] = {{"strain=9 %", "8 deg", 2},
+               {"threshold.strain=9 %", "8 deg", 2},
+               {"angle=3 deg", "2 %", 3},
+               {"charge.energy=3 kJ/m", "", 0}}; /* the strain follows it */
+  FILE *file = fopen("t-layer.yaml", "w");
+  assert_non_null(file);
+  fputs(HEAD "vary: {strain: [2 %, 5 %, 7 %], threshold.angle: [4 deg, 8 deg]}\n", file);
+  fclose(file);
+  FILE *linked = fopen("t-linked.yaml", "w");
+  assert_non_null(linked);
+  fputs(HEAD "vary: {charge.energy: [1 kJ/m, 2 kJ/m], strain: {linked: energy, values: [1 %, 2 %]}}\n", linked);
+  fclose(linked);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct campaign *campaign = NULL;
+    const struct campaign_changes changes = {1, &cases[i].change, 0, 0};
+    if (cases[i].points == 0) {
+      assert_int_equal(campaign_load_changed("t-linked.yaml", &changes, &campaign, &error), STATUS_USAGE);
+      continue;
+    }
+    OK(campaign_load_changed("t-layer.yaml", &changes, &campaign, &error));
+    assert_int_equal(points_of(campaign), cases[i].points);
+    assert_non_null(strstr(campaign->text, cases[i].kept));
+    struct campaign *stored = NULL;
+    OK(campaign_parse_stored("t", campaign->text, NULL, &stored, &error));
+    assert_int_equal(points_of(stored), cases[i].points);
+    campaign_free(stored);
+    campaign_free(campaign);
+  }
+  remove("t-layer.yaml");
+  remove("t-linked.yaml");
+}
+
 TEST(bad_documents_are_told_what_to_do) {
   bad("name: t\nscene: disc-collision\nset: {impact.speed: 100 m/s}\nvary: {impact.parameter: [0, 0.5]}\n",
       "t.yaml:3:21: error: set.impact.speed: has no effect|t.yaml:4:26: error: vary.impact.parameter: the dem scene");
