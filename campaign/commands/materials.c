@@ -30,22 +30,33 @@ static status list(const struct engine_materials *materials, enum table_format f
   return table_end(table, error);
 }
 
-/* Judges a file as a scene does that takes its material; with `fewer`, one whose body needs fewer values. */
+/* Judges a file as a scene does that takes its material; with `fewer`, one whose body needs fewer values. Tells of the
+ * conditions that this material breaks. */
 static status judge(const struct engine_materials *materials, const char *file, bool fewer, struct error *error) {
   const struct engine_trial *trial = &materials->trial;
   SCENE scene = NULL;
   TRY(scene_parse("material", trial->scene, &scene, error));
   if (fewer)
     TRY(scene_set_text(scene, trial->input, trial->value, error));
+  const struct condition *list = scene->kind->conditions;
+  const condition_set before = condition_before(list, scene->inputs, NULL);
   TRY(scene_set_text(scene, trial->section, file, error));
-  return scene_check(scene, error);
+  TRY(scene_check(scene, error));
+  const condition_set broken = condition_before(list, scene->inputs, NULL) & ~before;
+  for (size_t k = 0; list[k].word; k++) {
+    char says[CONDITION_SAYS];
+    if (broken >> k & 1)
+      words_print(stderr, "", "clast: warning: %s: %s (clast explain %s)", list[k].word, condition_says(&list[k], says),
+                  list[k].word);
+  }
+  return STATUS_OK;
 }
 
 /* What a file leaves to the material that it is like, and of which values it gives one of two that belong together. */
 static status tell_like(const struct engine_materials *materials, document_node *root, struct error *error) {
   const struct field_table *values = materials->values;
   static const char *const words[] = {"material", "source", "sources", "like", NULL};
-  OWNED void *own = memory_small(1, values->size), *like = memory_small(1, values->size);
+  OWNED void *own = memory_small(1, values->size), *like = memory_small(1, values->size); /* both at last */
   OWNED bool *given = memory_small(values->count, sizeof *given);
   document_node *name = document_key(root, "like");
   char text[2048] = "", shown[FIELD_TEXT_SIZE];
@@ -56,11 +67,17 @@ static status tell_like(const struct engine_materials *materials, document_node 
   field_defaults(values, own);
   document_read_given(root, values, words, own, given, NULL);
   for (size_t i = 0; i < values->count; i++) {
+    struct field_value value;
+    for (int k = 0; k < 2; k++)
+      one[k] |= given[i] && strcmp(values->rows[i].path, materials->together[k]) == 0;
+    field_get(&values->rows[i], own, &value);
+    if (given[i])
+      TRY(field_set(&values->rows[i], like, &value, error));
+  }
+  for (size_t i = 0; i < values->count; i++) {
     const struct field *row = &values->rows[i];
     struct field_value value;
     bool other = false;
-    for (int k = 0; k < 2; k++)
-      one[k] |= given[i] && strcmp(row->path, materials->together[k]) == 0;
     field_get(row, like, &value);
     for (int k = 0; k < 2; k++) /* the other name of a value that the file gives */
       other |= strcmp(row->path, materials->either[k]) == 0 &&

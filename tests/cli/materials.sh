@@ -187,6 +187,14 @@ says "give bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus"; one_error
 expect 65 "$clast" materials ./stiff.yaml
 says "give bulk_modulus: E / (3 (1 - 2 nu)) and shear_modulus"; one_error
 
+# What a scene would doubt is told of a file, too; values without effect are not those of the material that it is like.
+printf 'material: odd\nlike: granite\nshear_modulus: 24 GPa\nbulk_modulus: 1 GPa\n' >odd.yaml
+expect 0 "$clast" materials ./odd.yaml
+says "warning: poisson: "
+printf 'material: whole\nlike: pumice\nporosity: {curve: none}\n' >whole.yaml
+expect 0 "$clast" materials ./whole.yaml
+says "as in pumice: density"; ! grep -q "porosity" err || fail "pores without a curve"
+
 # A fault in a file within a document: its first line only, without an excerpt that has no place in a line.
 printf 'material: bare\nlike: basalt\ndensity: 3\n' >bare.yaml
 sed 's/stiff.yaml/bare.yaml/' set.yaml >bare-set.yaml
@@ -252,7 +260,7 @@ printf '%s\n' 'like: granite' 'weibull: {m: 9}' >m.yaml
 expect 0 "$clast" materials m.yaml
 says "weibull.k 1e33 1/m^3"; says "warning: weibull.m is the file's own and weibull.k is that of granite"
 expect 0 "$clast" materials rocks/other.yaml
-silent err
+says "moduli: "  # as in each scene with granite
 
 # A scene's own number of its rock: other rocks keep it, and the user is told theirs.
 printf 'name: kept\nscene: basalt-sphere\nset: {fidelity.particles: 1000, fidelity.projectile_spacing: 1}\nvary: {target.material: [basalt, granite]}\n' >kept.yaml
@@ -289,4 +297,4 @@ printf '%s\n' 'name: both' 'scene: disruption' 'set: {fidelity.particles: 1000}'
 expect 0 "$clast" plan both.yaml --no-trial
 tr '\n' ' ' <out | grep -qE 'point, target.material (basalt|granite), projectile.material (nylon|steel):' || fail "the point is $(cat out)"
 ok "rocks of two bodies in the name of a point"
-done_after 103
+done_after 105
