@@ -38,9 +38,13 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
     p->mass[i] = p->density[i] * dx * dx * dx;
     p->h[i] = 1.2 * dx;
   }
-  struct sph_flaw_law law = {.weibull = material->weibull, .volume = (double)large * dx * dx * dx, .seed = 1};
+  const struct sph_flaw_law law = {.weibull = material->weibull, .seed = 1};
+  const double edge = N * dx;
+  const struct sph_shape cube = {.kind = SPH_SHAPE_BOX,
+                                 .centre = {edge / 2, edge / 2, edge / 2},
+                                 .side = {edge, edge, edge}};
   struct sph_flaws *list = NULL;
-  if (flaws && sph_flaws_make(&law, large, NULL, NULL, 0, &list, NULL) != STATUS_OK)
+  if (flaws && sph_flaws_place(&law, &cube, p, (struct sph_range){.n = large}, HUGE_VAL, &list, NULL) != STATUS_OK)
     exit(1);
   struct sph_body_physics bodies[2] = {{.material = *material, .strength = true, .flaws = list},
                                        {.material = *material, .strength = true}};

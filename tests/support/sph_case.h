@@ -4,6 +4,7 @@
 #include "engine/sph/step/system.h"
 #include "tests/support/case_parameters.h"
 #include "tests/support/check.h"
+#include "tests/support/flaw_row.h"
 
 #define CASE_UNUSED __attribute__((unused))
 
@@ -50,10 +51,8 @@ static CASE_UNUSED struct sph_particles *case_make(const struct case_block *bloc
 }
 
 static CASE_UNUSED struct sph_flaws *case_flaws(size_t n, double volume, uint64_t seed, uint64_t body) {
-  struct sph_flaw_law law = {.weibull = case_basalt.weibull, .volume = volume, .seed = seed, .body = body};
-  struct sph_flaws *flaws = NULL;
-  assert_int_equal(sph_flaws_make(&law, n, NULL, NULL, 0, &flaws, NULL), STATUS_OK);
-  return flaws;
+  const struct sph_flaw_law law = {.weibull = case_basalt.weibull, .seed = seed, .body = body};
+  return flaw_row(&law, n, volume);
 }
 
 static CASE_UNUSED struct sph_system *case_system(const struct sph_particles *p, size_t bodies,

@@ -322,7 +322,7 @@ TEST(damage) {
           names[cap][growth], exact, worst, compact, 100 * (compact / exact - 1));
       /* a flaw whose threshold the strain of one step meets within rounding may open a step sooner: one step's growth
        */
-      assert_true(worst < 3e-2);
+      assert_true(worst < 5e-2);
       assert_true(fabs(compact / exact - 1) < 0.05); /* a bound on what compact lists change; the number is above */
     }
   double turned;

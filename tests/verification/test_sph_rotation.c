@@ -157,11 +157,8 @@ static void impact(bool correction, int precision) {
   const double direction[3] = {0, 0.2, 1};
   OK(sph_bodies_aim(&c.body[0].shape, &c.body[1].shape, direction, 0.5, 0.1 * radius, flight, &error));
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
-  struct sph_flaw_law law = {.weibull = solid_basalt().weibull,
-                             .volume = 4.0 / 3 * M_PI * pow(radius, 3),
-                             .draw = SPH_FLAWS_RANKED,
-                             .seed = 3};
-  OK(sph_flaws_make(&law, c.range[0].n, NULL, NULL, 0, &flaws, &error));
+  const struct sph_flaw_law law = {.weibull = solid_basalt().weibull, .draw = SPH_FLAWS_RANKED, .seed = 3};
+  OK(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], INFINITY, &flaws, &error));
   c.physics[0].flaws = flaws;
   const double velocity[3] = {2000 * flight[0], 2000 * flight[1], 2000 * flight[2]};
   sph_bodies_move(c.particles, c.range[1], velocity);

@@ -1,4 +1,4 @@
-/* Flaws are drawn until every particle has one. */
+/* Drawing flaws, finding their owners, and the lists of thresholds that the loops read. */
 #include "engine/sph/body/flaws.h"
 
 #include <math.h>
@@ -62,128 +62,48 @@ status sph_flaws_cells(uint64_t seed, uint64_t body, double width, const struct 
 }
 
 struct placed {
-  size_t particle;
+  size_t owner;
   double log_strain;
 };
 
-/* Flaws in the order of drawing. */
+/* Flaws in the order of drawing, of owners: particles or cells. */
 struct drawn {
   const struct sph_flaw_law *law;
-  size_t n; /* particles */
+  size_t n;            /* owners */
+  const double *share; /* by owner: part of the body's volume; NULL: 1/n */
+  unsigned char *has;  /* by owner: a flaw, or none allowed */
   struct placed *flaw;
   size_t count, capacity;
-  unsigned char *has; /* by particle: a flaw, or none allowed */
-  size_t without;     /* number of particles without one */
   double log_kv;
-  double gamma; /* cumulative unit exponentials */
 };
 
-static bool push(struct drawn *d, size_t particle, double rank) {
+static status push(struct drawn *d, size_t owner, double rank, struct error *error) {
   if (!grow_room(&d->flaw, &d->capacity, d->count + 1, sizeof *d->flaw))
-    return false;
-  d->flaw[d->count++] = (struct placed){particle, (log(rank) - d->log_kv) / d->law->weibull.m};
-  return true;
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d->count);
+  d->flaw[d->count++] = (struct placed){owner, (log(rank) - d->log_kv) / d->law->weibull.m};
+  d->has[owner] = 1;
+  return STATUS_OK;
 }
 
-/* Counting sort by particle. It keeps the order of drawing, which is that of ascending strain. */
-static struct sph_flaws *sort_by_particle(const struct drawn *d) {
+/* Counting sort by owner. It keeps the order of drawing, which is that of ascending strain. */
+static struct sph_flaws *sort_by_owner(const struct drawn *d) {
   struct sph_flaws *flaws = memory_small(1, sizeof *flaws);
   flaws->particles = d->n;
   flaws->count = d->count;
   flaws->first = calloc(d->n + 2, sizeof *flaws->first);
-  flaws->log_strain = malloc((d->count ? d->count : 1) * sizeof *flaws->log_strain);
+  flaws->log_strain = malloc(d->count * sizeof *flaws->log_strain);
   if (!flaws->first || !flaws->log_strain) {
     sph_flaws_free(flaws);
     return NULL;
   }
   size_t *next = flaws->first + 1;
   for (size_t f = 0; f < d->count; f++)
-    next[d->flaw[f].particle + 1]++;
+    next[d->flaw[f].owner + 1]++;
   for (size_t i = 1; i <= d->n; i++)
     next[i] += next[i - 1];
   for (size_t f = 0; f < d->count; f++)
-    flaws->log_strain[next[d->flaw[f].particle]++] = d->flaw[f].log_strain;
+    flaws->log_strain[next[d->flaw[f].owner]++] = d->flaw[f].log_strain;
   return flaws;
-}
-
-/* Draws flaws in the order of their strength. */
-static status draw(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
-  const struct sph_flaw_law *law = d->law;
-  for (uint64_t f = 0; law->number ? f < law->number : d->without && f < most; f++) {
-    double rank = (double)(f + 1);
-    if (law->draw == SPH_FLAWS_POISSON) {
-      d->gamma -= log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, f));
-      rank = d->gamma;
-    }
-    const size_t i = owner ? owner(context, f)
-                           : (size_t)(random_draw(law->seed, RANDOM_FLAW_PLACE, law->body, f) * (double)d->n);
-    if (i == SPH_FLAWS_NOBODY)
-      continue;
-    if (!push(d, i, rank))
-      return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d->count);
-    d->without -= !d->has[i];
-    d->has[i] = 1;
-  }
-  return STATUS_OK;
-}
-
-/* Gives each particle without a flaw the first one that it would get if drawing went on. */
-static status draw_rest(struct drawn *d, struct error *error) {
-  const struct sph_flaw_law *law = d->law;
-  const double last = law->draw == SPH_FLAWS_POISSON ? d->gamma : (double)law->number;
-  for (size_t i = 0; i < d->n; i++) {
-    if (d->has[i])
-      continue;
-    const double wait = -log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, ~(uint64_t)i));
-    if (!push(d, i, last + wait * (law->share ? 1 / law->share[i] : (double)d->n)))
-      return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d->count);
-  }
-  return STATUS_OK;
-}
-
-static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
-  const struct sph_flaw_law *law = d->law;
-  const size_t n = d->n;
-  const double m = law->weibull.m, k = law->weibull.k, volume = law->volume;
-  if (!(m > 0 && k > 0 && volume > 0 && isfinite(m + k + volume)))
-    return status_fail(error, STATUS_CONTENT,
-                       "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", m, k, volume);
-  d->log_kv = log(law->weibull.k) + log(law->volume);
-  for (size_t i = 0; law->exempt && i < n; i++) {
-    d->has[i] = law->exempt[i] != 0;
-    d->without -= d->has[i];
-  }
-  if (n && !d->without)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "all %zu particles of a body lie in its flaw-free ends: shorten stretch.flaw_free or raise fidelity.particles.",
-        n);
-
-  if (!most)
-    most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));
-  TRY(draw(d, owner, context, most, error));
-  if (law->number)
-    return draw_rest(d, error);
-  if (d->without)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "%zu of %zu particles got no flaw within %llu flaws: their sizes differ too much for one flaw each", d->without,
-        n, (unsigned long long)most);
-  return STATUS_OK;
-}
-
-status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner owner, void *context, uint64_t most,
-                      struct sph_flaws **out, struct error *error) {
-  *out = NULL;
-  OWNED unsigned char *has = calloc(n ? n : 1, 1);
-  if (!has)
-    return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
-  struct drawn d = {.law = law, .n = n, .without = n, .has = has};
-  status code = draw_all(&d, owner, context, most, error);
-  if (!code && !(*out = sort_by_particle(&d)))
-    code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d.count);
-  free(d.flaw);
-  return code;
 }
 
 void sph_flaws_free(struct sph_flaws *flaws) {
@@ -197,13 +117,14 @@ void sph_flaws_free(struct sph_flaws *flaws) {
 
 /* ---- flaws as points in a shape ---- */
 
+#define NOBODY ((size_t)-1)
+
 struct places {
   const struct sph_shape *shape;
   double half;
   const struct sph_kd_tree *nearest;
   const unsigned char *exempt;
   const struct sph_cells *cells; /* NULL: particles own flaws */
-  uint64_t seed, body;
 };
 
 void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]) {
@@ -216,16 +137,40 @@ void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct s
   } while (!sph_shape_place(shape, uniform, point));
 }
 
-static size_t nearest_particle(void *context, uint64_t flaw) {
-  const struct places *places = context;
+/* The owner of flaw `flaw`; NOBODY where its place has none. */
+static size_t owner_of(const struct places *places, const struct sph_flaw_law *law, uint64_t flaw) {
   double point[3];
-  sph_flaws_point(places->seed, places->body, flaw, places->shape, point);
+  sph_flaws_point(law->seed, law->body, flaw, places->shape, point);
   if (fabs(point[2]) > places->half)
-    return SPH_FLAWS_NOBODY;
+    return NOBODY;
   const size_t i = sph_kd_tree_find(places->nearest, point);
   if (places->exempt[i])
-    return SPH_FLAWS_NOBODY;
+    return NOBODY;
   return places->cells ? places->cells->of[i] : i;
+}
+
+/* Draws flaws in the order of their strength. Then gives each owner without a flaw the first one that it would get if
+ * drawing went on. */
+static status draw(struct drawn *d, const struct places *places, struct error *error) {
+  const struct sph_flaw_law *law = d->law;
+  const uint64_t number = (uint64_t)ceil((double)d->n * (log((double)d->n) + 0.5772156649015329));
+  double rank = 0;
+  for (uint64_t f = 0; f < number; f++) {
+    if (law->draw == SPH_FLAWS_POISSON)
+      rank -= log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, f));
+    else
+      rank = (double)(f + 1);
+    const size_t owner = owner_of(places, law, f);
+    if (owner != NOBODY)
+      TRY(push(d, owner, rank, error));
+  }
+  for (size_t i = 0; i < d->n; i++) {
+    if (d->has[i])
+      continue;
+    const double wait = -log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, ~(uint64_t)i));
+    TRY(push(d, i, rank + wait * (d->share ? 1 / d->share[i] : (double)d->n), error));
+  }
+  return STATUS_OK;
 }
 
 /* Marks the particles in the ends of the body. NULL without memory. */
@@ -251,40 +196,48 @@ static double *find_shares(const struct sph_particles *p, struct sph_range range
   return share;
 }
 
-/* Cells of which all particles are exempt. NULL without memory. */
-static unsigned char *exempt_cells(const struct sph_cells *cells, const unsigned char *exempt) {
-  unsigned char *out = malloc(cells->count);
+/* By owner: all of its particles are exempt. NULL without memory. */
+static unsigned char *exempt_owners(const struct sph_cells *cells, const unsigned char *exempt, size_t particles) {
+  unsigned char *out = malloc(particles);
   if (!out)
     return NULL;
-  memset(out, 1, cells->count);
-  for (size_t i = 0; i < cells->particles; i++)
-    if (!exempt[i])
-      out[cells->of[i]] = 0;
+  memset(out, 1, particles);
+  for (size_t i = 0; i < particles; i++)
+    out[cells ? cells->of[i] : i] &= exempt[i];
   return out;
 }
 
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape, const struct sph_particles *p,
                        struct sph_range range, double half, struct sph_flaws **out, struct error *error) {
   *out = NULL;
-  struct sph_flaw_law full = *law;
+  const double m = law->weibull.m, k = law->weibull.k;
+  const double volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
+  if (!(m > 0 && k > 0 && volume > 0 && isfinite(m + k + volume)))
+    return status_fail(error, STATUS_CONTENT,
+                       "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", m, k, volume);
   OWNED struct sph_cells *cells = NULL; /* the owners of flaws; NULL: particles */
   OWNED struct sph_kd_tree *nearest = NULL;
   if (law->cell_width > 0)
     TRY(sph_flaws_cells(law->seed, law->body, law->cell_width, p, range, &cells, error));
+  const size_t n = cells ? cells->count : range.n;
   const bool unequal = cells || is_graded(p, range);
   OWNED unsigned char *ends = find_ends(p, range, half);
-  OWNED unsigned char *ends_cells = ends && cells ? exempt_cells(cells, ends) : NULL;
+  OWNED unsigned char *has = ends ? exempt_owners(cells, ends, range.n) : NULL;
   OWNED double *share = unequal ? find_shares(p, range, cells) : NULL;
-  if (!ends || (cells && !ends_cells) || (unequal && !share))
+  if (!has || (unequal && !share))
     return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
+  if (!memchr(has, 0, n))
+    return status_fail(
+        error, STATUS_CONTENT,
+        "all %zu particles of a body lie in its flaw-free ends: shorten stretch.flaw_free or raise fidelity.particles.",
+        range.n);
   TRY(sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &nearest, error));
-  const size_t n = cells ? cells->count : range.n;
-  full.volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
-  full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
-  full.exempt = cells ? ends_cells : ends;
-  full.share = share;
-  struct places places = {shape, half, nearest, ends, cells, law->seed, law->body};
-  TRY(sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error));
+  struct drawn d = {.law = law, .n = n, .share = share, .has = has, .log_kv = log(k) + log(volume)};
+  status code = draw(&d, &(struct places){shape, half, nearest, ends, cells}, error);
+  if (!code && !(*out = sort_by_owner(&d)))
+    code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d.count);
+  free(d.flaw);
+  TRY(code);
   (*out)->particles = range.n;
   (*out)->cells = cells;
   cells = NULL;

@@ -3,9 +3,8 @@
  * Flaw j = 1, 2, ... of a body of (solid) volume V has the activation strain
  *   ranked:  eps_j = (j / kV)^(1/m)             as printed: a seed only changes the places of the flaws
  *   poisson: eps_j = (Gamma_j / kV)^(1/m)       Gamma_j cumulative unit exponentials: the strengths are drawn, too
- * and belongs to the particle that owns a random point. Drawing ends when every particle has a flaw (after about n ln n
- * flaws). Thresholds are kept as logarithms, ln eps_j = (ln j - ln k - ln V)/m, which do not overflow for any m and k
- * that a user can type.
+ * and belongs to the particle nearest to a random point. Thresholds are kept as logarithms, ln eps_j = (ln j - ln k -
+ * ln V)/m, which do not overflow for any m and k that a user can type.
  *
  * Flaws are points in the body's true shape (sph_flaws_place), so that one seed means the same physical flaws at every
  * resolution. */
@@ -35,19 +34,11 @@ enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON, SPH_FLAW_DRAWS };
 
 struct sph_flaw_law {
   struct sph_weibull_material weibull;
-  double volume;      /* m^3, of solid matter */
-  double solid_ratio; /* sph_flaws_place: density of the solid over that of the body; 0 counts as 1 */
+  double solid_ratio; /* density of the solid over that of the body; 0 counts as 1 */
   int draw;           /* enum sph_flaw_draw */
   uint64_t seed;
-  uint64_t body; /* bodies of one seed have different flaws */
-  /* 0: draw until every particle has a flaw. Else, for bodies whose particles differ much in size, the number of flaws
-   * that are drawn. A particle i that got none is then given the first one that it would get if drawing went on: at
-   * rank last + E / share[i], E a unit exponential. */
-  uint64_t number;
-  const double *share;         /* with `number`: part of the volume of each particle; NULL: 1/n */
-  const unsigned char *exempt; /* particles that have no flaws (owner() must not name them); NULL: none */
-  double cell_width; /* m, sph_flaws_place: particles of a cell of this width share flaws (struct sph_cells). 0: each
-                        has its own */
+  uint64_t body;     /* bodies of one seed have different flaws */
+  double cell_width; /* m, particles of a cell of this width share flaws (struct sph_cells). 0: each has its own */
 };
 
 /* Flaws by owner: owner i has first[i] .. first[i+1]-1, log_strain ascending within it. Owners are the particles, or
@@ -59,27 +50,18 @@ struct sph_flaws {
   struct sph_cells *cells; /* NULL: particles own flaws */
 };
 
-/* The index of the particle (of n) that owns the place of flaw `flaw` (0, 1, ...); SPH_FLAWS_NOBODY when the place is
- * outside. Places are drawn from (seed, RANDOM_FLAW_PLACE, body, flaw). */
-typedef size_t (*sph_flaws_owner)(void *context, uint64_t flaw);
-#define SPH_FLAWS_NOBODY ((size_t)-1)
-
-/* Draws until each of n particles has a flaw (owner NULL: of a random particle), or until there are `most` flaws (0: 64
- * n ln n). STATUS_MEMORY; STATUS_CONTENT when a particle got none within the limit, when none may have one, or when m,
- * k or the volume is not a positive number. */
-status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner owner, void *context, uint64_t most,
-                      struct sph_flaws **out, struct error *error);
 void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
 
 /* The flaws of a body. Their points are uniform in the shape; each flaw belongs to the nearest particle (of two, to
- * that with the lower id). law->volume is not used: V is the shape's volume over law->solid_ratio. With
- * `half`, flaws in the ends |z| > half (m) are dropped and particles there have none.
+ * that with the lower id). V is the shape's volume over law->solid_ratio. With `half`, flaws in the ends |z| > half (m)
+ * are dropped and particles there have none.
  *
- * n (ln n + 0.5772) flaws are drawn, as many as equal cells need on average until each has one; law->number says what a
- * particle without a flaw gets. (Drawing until each has one would count the smallest cell: cells cut by the surface
- * made 13 to 17 % more flaws of it.) So the weakest flaw of every particle follows the law exactly. With
- * law->cell_width, n counts cells, and a flaw belongs to the cell of the nearest particle. STATUS_MEMORY;
- * STATUS_CONTENT when m, k or the volume is not a positive number, or all particles are in the ends. */
+ * n (ln n + 0.5772) flaws are drawn, as many as equal cells need on average until each has one. A particle i that got
+ * none is then given the first one that it would get if drawing went on: at rank last + E V/V_i, E a unit exponential
+ * and V_i its volume. (Drawing until each has one would count the smallest cell: cells cut by the surface made 13 to
+ * 17 % more flaws of it.) So the weakest flaw of every particle follows the law exactly. With law->cell_width, n counts
+ * cells, and a flaw belongs to the cell of the nearest particle. STATUS_MEMORY; STATUS_CONTENT when m, k or the volume
+ * is not a positive number, or all particles are in the ends. */
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape,
                        const struct sph_particles *particles, struct sph_range range, double half,
                        struct sph_flaws **out, struct error *error);
