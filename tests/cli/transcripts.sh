@@ -44,6 +44,13 @@ for packed in re.findall(r'class="store">\s*([A-Za-z0-9+/=]+)', open(sys.argv[1]
                 print(*("-" if value is None else value for value in row[table == "runs":]), sep="|")
 PY
 chmod +x bin/page
+# script FILE: what gnuplot is told of this chart alone, and a digest of the lines that come from the templates.
+cat >bin/script <<'SH'
+#!/bin/sh
+sed '/^# The page of every/,$d' "$1"
+sed -n '/^# The page of every/,$p' "$1" | md5sum
+SH
+chmod +x bin/script
 
 printf 'engine: toy\nstick: {trouble: true}\n' >stick.yaml
 # grid: 2 x 2 points and 12 seeds, of which one is censored. few: a rule stops it. ask: a design of Saltelli.
