@@ -3,10 +3,10 @@
  * verification and validation.
  *
  * Nothing is judged by its size, but everything by its bits: choices.txt beside this file pins a hash of all that the
- * runs of a scene and an input give, and another of what the program says of them, beforehand and in the result
- * `warnings`. Under the sanitizers scenes are left out whose bodies and rules another scene has (again()). A line that
- * changes on purpose is written anew by CLAST_RENEW=1. Where the first hash of a line changes, tests/support/golden.h
- * says what else to do; a new row of results changes no hash while it is off. */
+ * runs of a scene and a section of its inputs give, and another of what the program says of them, beforehand and in the
+ * result `warnings`. Under the sanitizers scenes are left out whose bodies and rules another scene has (again()). A
+ * line that changes on purpose is written anew by CLAST_RENEW=1. Where the first hash of a line changes,
+ * tests/support/golden.h says what else to do; a new row of results changes no hash while it is off. */
 #define CHECK_OWN_MAIN
 #include "engine/sph/run/run.h"
 #include "tests/support/golden.h"
@@ -201,9 +201,28 @@ static bool chosen(const struct scene *scene, const char *path, const char *text
   return ran;
 }
 
+/* The inputs of a section of a scene share a line: target.material.tillotson, or fidelity. Names of materials have a
+ * line of their own, as the sanitizers leave them out. Ends the line of `section` unless `path` is in it, and begins
+ * another; NULL: no other. */
+static void hear_section(const char *scene, char section[100], const char *path) {
+  char next[100] = "";
+  snprintf(next, sizeof next, "%s", path ? path : "");
+  char *dot = strstr(next, "material.name") ? NULL : strrchr(next, '.');
+  if (dot)
+    *dot = '\0';
+  if (strcmp(section, next) == 0)
+    return;
+  if (*section)
+    pin(scene, section);
+  if (*next)
+    hear();
+  strcpy(section, next);
+}
+
 /* Choices that a scene refuses, or that have no effect in it, are left out. */
 TEST(every_choice_runs) {
   static const char *const switched[] = {"false", "true", NULL};
+  char section[100] = "";
   size_t ran = 0;
   for (size_t k = 0; k < SMALLEST; k++) {
     if (again(smallest[k].scene, false))
@@ -216,11 +235,11 @@ TEST(every_choice_runs) {
                                                                                         : NULL;
       if (!choices || material_again(smallest[k].scene, row->path))
         continue;
-      hear();
+      hear_section(smallest[k].scene, section, row->path);
       for (; *choices; choices++)
         ran += chosen(scene, row->path, *choices);
-      pin(smallest[k].scene, row->path);
     }
+    hear_section(smallest[k].scene, section, NULL);
   }
   print_message("%zu choices of %d scenes\n", ran, SMALLEST);
   assert_true(ran > (SANITIZED ? 300 : 500));
@@ -245,6 +264,7 @@ static void tell(const struct scene *scene, const char *path, double number) {
 /* Every number that a scene uses: below and above its own value, far off, zero and off. Nothing is run. What the
  * program says of the scene is heard and its identity, or why it is refused. */
 TEST(every_number_is_told) {
+  char section[100] = "";
   for (size_t k = 0; k < SMALLEST; k++) {
     if (!smallest[k].numbers || again(smallest[k].scene, true))
       continue;
@@ -258,11 +278,11 @@ TEST(every_number_is_told) {
         continue;
       const double own = value.kind == FIELD_INTEGER ? (double)value.integer : value.number;
       const double tried[] = {0.7 * own, 1.4 * own, 40 * own, 0, -1, NAN};
-      hear();
+      hear_section(smallest[k].scene, section, inputs->rows[i].path);
       for (size_t t = 0; t < sizeof tried / sizeof *tried; t++)
         tell(scene, inputs->rows[i].path, tried[t]);
-      pin(smallest[k].scene, inputs->rows[i].path);
     }
+    hear_section(smallest[k].scene, section, NULL);
   }
 }
 
