@@ -100,9 +100,9 @@ static inline int program_work(char **argv) {
     const struct farm_usage usage = farm_usage(farm);
     int twice = 0, done = 0, lost = 0;
     for (int i = 0; i < it.count; i++) {
-      twice += list.reports[i] > 1;
-      done += list.reports[i] == 1 && list.endings[i] == FARM_DONE;
-      lost += list.endings[i] == FARM_LOST;
+      twice += list.told[i].reports > 1;
+      done += list.told[i].reports == 1 && list.told[i].report.ending == FARM_DONE;
+      lost += list.told[i].report.ending == FARM_LOST;
     }
     FILE *file = fopen(getenv("CLAST_FARM_TEST_SUMMARY"), "w");
     if (file) {

@@ -34,21 +34,7 @@ struct task {
 
 struct task_answer {
   uint64_t id, value;
-  double kept_waiting_s; /* burning tasks: ready to run, but the machine ran something else */
 };
-
-/* Seconds for which this process was ready but not running (Linux: second number of schedstat). */
-static inline double task_kept_waiting(void) {
-  char text[128] = "";
-  unsigned long long ran = 0, waited = 0;
-  const int file = open("/proc/self/schedstat", O_RDONLY | O_CLOEXEC);
-  if (file < 0)
-    return 0;
-  if (read(file, text, sizeof text - 1) > 0)
-    sscanf(text, "%llu %llu", &ran, &waited);
-  close(file);
-  return 1e-9 * (double)waited;
-}
 
 static inline uint64_t task_value(uint64_t id) {
   return (id + 1) * UINT64_C(0x9e3779b97f4a7c15);
@@ -81,12 +67,8 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
     return status_fail(e, STATUS_CONTENT, "a task of %zu bytes", size);
   memcpy(&task, bytes, sizeof task);
   size_t big = 0;
-  double waited = task.kind == TASK_BURN ? task_kept_waiting() : 0;
   switch (task.kind) {
-  case TASK_BURN:
-    task_burn(task.amount);
-    waited = task_kept_waiting() - waited;
-    break;
+  case TASK_BURN: task_burn(task.amount); break;
   case TASK_SLEEP: task_sleep(task.amount); break;
   case TASK_SEGV:
     signal(SIGSEGV, SIG_DFL);
@@ -125,21 +107,22 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
   if (!*result)
     return status_fail(e, STATUS_MEMORY, "no memory");
   memset(*result, (int)(task.id & 0xff), *result_size);
-  memcpy(*result, &(struct task_answer){task.id, task_value(task.id), waited}, sizeof(struct task_answer));
+  memcpy(*result, &(struct task_answer){task.id, task_value(task.id)}, sizeof(struct task_answer));
   return STATUS_OK;
 }
+
+/* What was told of a task. */
+struct task_told {
+  int reports;               /* how often it was reported */
+  struct farm_report report; /* the last one; its bytes and its message are gone */
+  char message[160];
+};
 
 /* A list of tasks and their results. */
 struct task_list {
   struct task *tasks;
   size_t count, given;
-  int *reports; /* how often each was reported */
-  int *endings; /* the last ending */
-  int *exit_codes, *signals, *slots, *ranks;
-  double *walls, *cpus;
-  int64_t *peaks;
-  char (*messages)[160];
-  double kept_waiting_s;
+  struct task_told *told;
   uint64_t sum; /* sum over the answers of completed tasks: independent of order */
   size_t reported, wrong;
   size_t stop_after; /* report() returns `stop_with` after this many reports, 0 = never */
@@ -153,23 +136,13 @@ static inline void task_list_new(struct task_list *list, size_t count) {
   memset(list, 0, sizeof *list);
   list->count = count;
   list->tasks = calloc(count + 1, sizeof *list->tasks);
-  list->reports = calloc(count + 1, sizeof(int));
-  list->endings = calloc(count + 1, sizeof(int));
-  list->exit_codes = calloc(count + 1, sizeof(int));
-  list->signals = calloc(count + 1, sizeof(int));
-  list->slots = calloc(count + 1, sizeof(int));
-  list->ranks = calloc(count + 1, sizeof(int));
-  list->walls = calloc(count + 1, sizeof(double));
-  list->cpus = calloc(count + 1, sizeof(double));
-  list->peaks = calloc(count + 1, sizeof(int64_t));
-  list->messages = calloc(count + 1, sizeof *list->messages);
+  list->told = calloc(count + 1, sizeof *list->told);
   for (size_t i = 0; i < count; i++)
     list->tasks[i].id = i;
 }
 
 static inline void task_list_free(struct task_list *list) {
-  free(list->tasks), free(list->reports), free(list->endings), free(list->exit_codes), free(list->signals);
-  free(list->slots), free(list->ranks), free(list->walls), free(list->cpus), free(list->peaks), free(list->messages);
+  free(list->tasks), free(list->told);
 }
 
 static inline bool task_list_next(void *context, struct farm_task *task) {
@@ -187,16 +160,9 @@ static inline status task_list_report(void *context, const struct farm_report *r
   list->reported++;
   if (id >= list->count)
     return status_fail(e, STATUS_INTERNAL, "unknown id");
-  list->reports[id]++;
-  list->endings[id] = (int)report->ending;
-  list->exit_codes[id] = report->exit_code;
-  list->signals[id] = report->signal;
-  list->slots[id] = report->slot;
-  list->ranks[id] = report->rank;
-  list->walls[id] = report->wall_s;
-  list->cpus[id] = report->cpu_s;
-  list->peaks[id] = report->peak_memory;
-  snprintf(list->messages[id], sizeof list->messages[id], "%s", report->message);
+  list->told[id].reports++;
+  list->told[id].report = *report;
+  snprintf(list->told[id].message, sizeof list->told[id].message, "%s", report->message);
   if (report->ending == FARM_DONE) {
     struct task_answer answer;
     if (report->size < sizeof answer)
@@ -206,7 +172,6 @@ static inline status task_list_report(void *context, const struct farm_report *r
       if (answer.id != id || answer.value != task_value(id))
         list->wrong++;
       list->sum += answer.value;
-      list->kept_waiting_s += answer.kept_waiting_s;
       for (size_t i = sizeof answer; i < report->size; i += 509)
         list->wrong += report->bytes[i] != (id & 0xff);
     }

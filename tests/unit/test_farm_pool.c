@@ -26,7 +26,7 @@ static status run_list(struct farm_options options, struct task_list *list, stru
 
 static void assert_each_once(const struct task_list *list) {
   for (size_t i = 0; i < list->count; i++)
-    assert_int_equal(list->reports[i], 1);
+    assert_int_equal(list->told[i].reports, 1);
   assert_int_equal(list->wrong, 0);
 }
 
@@ -75,28 +75,28 @@ TEST(every_ending) {
                                          .memory_limit = (size_t)1 << 27};
     OK(run_list(options, &list, &error));
     assert_each_once(&list);
-    assert_int_equal(list.endings[3], FARM_CRASHED);
-    assert_int_equal(list.signals[3], SIGSEGV);
-    assert_int_equal(list.exit_codes[3], 0);
-    assert_int_equal(list.endings[7], FARM_CRASHED);
-    assert_int_equal(list.signals[7], SIGABRT);
-    assert_non_null(strstr(list.messages[7], "signal 6"));
-    assert_int_equal(list.endings[11], FARM_CRASHED);
-    assert_int_equal(list.exit_codes[11], 3);
-    assert_int_equal(list.endings[15], FARM_TIME_LIMIT);
-    assert_true(list.walls[15] >= 0.975 * limit_s && list.walls[15] < limit_s + 2.6);
-    assert_int_equal(list.endings[19], FARM_FAILED);
-    assert_int_equal(list.exit_codes[19], STATUS_CONTENT);
-    assert_string_equal(list.messages[19], "task 19 cannot");
-    assert_int_equal(list.endings[23], FARM_MEMORY_LIMIT);
-    assert_int_equal(list.endings[27], FARM_CRASHED); /* exit(0) without a result is no success */
-    assert_int_equal(list.endings[31], FARM_LOST);    /* SIGKILL comes from outside */
-    assert_int_equal(list.endings[35], FARM_LOST);    /* the machine's disk */
-    assert_int_equal(list.endings[38], FARM_LOST);    /* a library that the system refused a thread */
-    assert_non_null(strstr(list.messages[38], "code 71"));
+    assert_int_equal(list.told[3].report.ending, FARM_CRASHED);
+    assert_int_equal(list.told[3].report.signal, SIGSEGV);
+    assert_int_equal(list.told[3].report.exit_code, 0);
+    assert_int_equal(list.told[7].report.ending, FARM_CRASHED);
+    assert_int_equal(list.told[7].report.signal, SIGABRT);
+    assert_non_null(strstr(list.told[7].message, "signal 6"));
+    assert_int_equal(list.told[11].report.ending, FARM_CRASHED);
+    assert_int_equal(list.told[11].report.exit_code, 3);
+    assert_int_equal(list.told[15].report.ending, FARM_TIME_LIMIT);
+    assert_true(list.told[15].report.wall_s >= 0.975 * limit_s && list.told[15].report.wall_s < limit_s + 2.6);
+    assert_int_equal(list.told[19].report.ending, FARM_FAILED);
+    assert_int_equal(list.told[19].report.exit_code, STATUS_CONTENT);
+    assert_string_equal(list.told[19].message, "task 19 cannot");
+    assert_int_equal(list.told[23].report.ending, FARM_MEMORY_LIMIT);
+    assert_int_equal(list.told[27].report.ending, FARM_CRASHED); /* exit(0) without a result is no success */
+    assert_int_equal(list.told[31].report.ending, FARM_LOST);    /* SIGKILL comes from outside */
+    assert_int_equal(list.told[35].report.ending, FARM_LOST);    /* the machine's disk */
+    assert_int_equal(list.told[38].report.ending, FARM_LOST);    /* a library that the system refused a thread */
+    assert_non_null(strstr(list.told[38].message, "code 71"));
     for (size_t i = 0; i < list.count; i++)
       if (list.tasks[i].kind == TASK_ECHO)
-        assert_int_equal(list.endings[i], FARM_DONE);
+        assert_int_equal(list.told[i].report.ending, FARM_DONE);
   }
 }
 
@@ -109,7 +109,7 @@ TEST(large_results) {
     OK(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error));
     assert_each_once(&list);
     for (size_t i = 0; i < list.count; i++)
-      assert_int_equal(list.endings[i], FARM_DONE);
+      assert_int_equal(list.told[i].report.ending, FARM_DONE);
   }
 }
 
@@ -123,13 +123,15 @@ TEST(costs_are_the_tasks_own) {
     list.tasks[2] = (struct task){.id = 2, .kind = TASK_SLEEP, .amount = 0.1};
     OK(run_list((struct farm_options){.slots = 1, .in_process = mode}, &list, &error));
     assert_each_once(&list);
-    assert_true(list.peaks[0] > 90000000);
-#ifndef __SANITIZE_ADDRESS__               /* its quarantine keeps freed memory */
-    assert_true(list.peaks[1] < 90000000); /* in process only where /proc/self/clear_refs may be written */
+    assert_true(list.told[0].report.peak_memory > 90000000);
+#ifndef __SANITIZE_ADDRESS__ /* its quarantine keeps freed memory */
+    assert_true(list.told[1].report.peak_memory <
+                90000000); /* in process only where /proc/self/clear_refs may be written */
 #endif
-    assert_true(list.cpus[1] > 0.099 && list.cpus[1] < 0.2); /* above: 0.1 burnt + fork and exit on a loaded machine */
-    assert_true(list.cpus[2] < 0.05);
-    assert_true(list.walls[2] > 0.099);
+    assert_true(list.told[1].report.cpu_s > 0.099 &&
+                list.told[1].report.cpu_s < 0.2); /* above: 0.1 burnt + fork and exit on a loaded machine */
+    assert_true(list.told[2].report.cpu_s < 0.05);
+    assert_true(list.told[2].report.wall_s > 0.099);
   }
 }
 
@@ -147,7 +149,7 @@ TEST(the_caller_can_stop) {
       assert_int_equal(ended, reasons[reason]);
       assert_string_equal(error.message, "the caller has enough");
       for (size_t i = 0; i < list.count; i++)
-        assert_in_range(list.reports[i], 0, 1);
+        assert_in_range(list.told[i].reports, 0, 1);
       if (reasons[reason] == STATUS_IO)
         assert_int_equal(list.reported, 20); /* the campaign asked for no more tasks */
       else
@@ -181,7 +183,7 @@ TEST(nobody_waits_behind_a_long_task) {
     const double wall = 1e-9 * (double)(clock_ns() - start_ns);
     assert_each_once(&list);
     for (size_t i = 1; i < list.count; i++)
-      assert_true(list.slots[i] != list.slots[0]);
+      assert_true(list.told[i].report.slot != list.told[0].report.slot);
     assert_true(wall < 1.5); /* 1 s of the long task plus a margin for a loaded machine; behind it: 1.02 s and more */
   }
 }
