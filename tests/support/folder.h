@@ -21,5 +21,5 @@ static inline int make_folder(void **state) {
 
 static inline int remove_folder(void **state) {
   (void)state;
-  return sweep(folder); /* fails when a test or a failed write left anything behind */
+  return sweep(folder, NULL); /* fails when a test or a failed write left anything behind */
 }

@@ -432,7 +432,7 @@ int main(int argc, char **argv) {
   if (!keep_pictures && !mkdtemp(folder))
     return 1;
   int failed = check_run(NULL, NULL);
-  if (!keep_pictures && sweep(folder))
+  if (!keep_pictures && sweep(folder, NULL))
     return 1;
   return failed;
 }
