@@ -128,7 +128,7 @@ int convergence_order(double error, double cost, double other_error, double othe
 
 struct convergence_row { /* one level of one knob, for one quantity */
   char knob[FIELD_TEXT_SIZE], quantity[FIELD_TEXT_SIZE], setting[FIELD_TEXT_SIZE];
-  int64_t point; /* of the level in the store, for rows that were read from there */
+  int64_t point, base_point; /* of level and scene in the store, for rows that were read from there */
   bool base, reference, paired;
   double step; /* NaN: the knob has none */
   int64_t n;

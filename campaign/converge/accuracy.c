@@ -51,6 +51,20 @@ struct seen_rate {
   double rate; /* processor time of a run over the engine's measure of its work */
 };
 
+/* A point of the campaign, and what a run with its own settings takes. */
+struct place {
+  int64_t point; /* in the store; 0: not there */
+  double work, own_s;
+};
+
+/* What a run of a studied level takes. */
+struct level_cost {
+  int64_t base_point;
+  bool base;
+  char knob[64], setting[64];
+  double cpu_s;
+};
+
 struct kept_part {
   struct ask_part part;
   char knob[64], finest[64];
@@ -74,6 +88,10 @@ struct finding {
   struct convergence_row finest; /* the reference of the last knob that has one, for levels finer than it */
   struct seen_rate *seen;        /* of levels that ran; owned */
   size_t seen_count, seen_room;
+  struct place *places; /* the first points of the campaign; owned */
+  size_t place_count, place_room;
+  struct level_cost *costs; /* of all studies; owned */
+  size_t cost_count, cost_room;
   struct kept_part *parts; /* of the scene and its levels; owned */
   size_t part_count, part_room;
   bool studied;
@@ -159,6 +177,82 @@ static void own_levels(const struct finding *finding, char *text, size_t size) {
 
 static double work_of(const struct scene *scene) {
   return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+}
+
+/* The cost of a level, or of the scene's own settings, by the study of a point. NaN: it has none. */
+static double level_cost(const struct finding *finding, int64_t base_point, const char *knob, const char *setting,
+                         bool own) {
+  for (size_t i = 0; i < finding->cost_count; i++) {
+    const struct level_cost *cost = &finding->costs[i];
+    if (cost->base_point == base_point &&
+        (own ? cost->base : strcmp(cost->knob, knob) == 0 && strcmp(cost->setting, setting) == 0))
+      return cost->cpu_s;
+  }
+  return NAN;
+}
+
+/* The costs of all studies, and what a run of each point takes: by its study or its runs, else by those of the point
+ * whose work is nearest. */
+static status read_places(struct finding *finding, struct store *store, struct error *error) {
+  const struct engine_kind *kind = finding->campaign->scene->kind;
+  CAMPAIGN_WALK walk = {0};
+  TRY(campaign_walk_begin(&walk, finding->campaign, error));
+  for (int i = 0; i < LOOKED_AT && campaign_walk_next(&walk); i++) {
+    struct error ignored;
+    SCENE scene = campaign_walk_scene(&walk, &ignored);
+    if (!scene)
+      continue;
+    if (!grow_room(&finding->places, &finding->place_room, finding->place_count + 1, sizeof *finding->places))
+      return status_fail(error, STATUS_MEMORY, "no memory for the points of a campaign");
+    struct place *place = &finding->places[finding->place_count++];
+    *place = (struct place){.work = work_of(scene), .own_s = NAN};
+    TRY(store_point_find(store, scene, &place->point, error));
+  }
+  ANSWER levels = ask_convergence_levels(store, 0, kind->results_version, finding->quantity.column, false, error);
+  for (struct convergence_row row; ask_convergence_next(&levels, &row);) {
+    if (!(row.cpu > 0))
+      continue;
+    if (!grow_room(&finding->costs, &finding->cost_room, finding->cost_count + 1, sizeof *finding->costs))
+      return status_fail(error, STATUS_MEMORY, "no memory for the costs of a study");
+    struct level_cost *cost = &finding->costs[finding->cost_count++];
+    *cost = (struct level_cost){.base_point = row.base_point, .base = row.base, .cpu_s = row.cpu};
+    snprintf(cost->knob, sizeof cost->knob, "%.63s", row.knob);
+    snprintf(cost->setting, sizeof cost->setting, "%.63s", row.setting);
+  }
+  TRY(answer_end(&levels));
+  ANSWER runs = ask_run_costs(store, kind->results_version, error);
+  while (answer_next(&runs))
+    for (size_t i = 0; i < finding->place_count; i++)
+      if (finding->places[i].point == answer_integer(&runs, 0))
+        finding->places[i].own_s = answer_real(&runs, 1);
+  for (size_t i = 0; i < finding->place_count; i++) {
+    const double studied = level_cost(finding, finding->places[i].point, "", "", true);
+    if (finding->places[i].point && !isnan(studied))
+      finding->places[i].own_s = studied;
+  }
+  return answer_end(&runs);
+}
+
+/* What a run of a setting takes, as a mean over the points of the campaign; run_s: at the point that was studied. */
+static double mean_cost(const struct finding *finding, const struct accuracy_option *option, double run_s) {
+  const double studied = level_cost(finding, finding->point, "", "", true), work = work_of(finding->scene);
+  double sum = 0;
+  for (size_t i = 0; i < finding->place_count; i++) {
+    const struct place *place = &finding->places[i];
+    const double cost = level_cost(finding, place->point, option->knob, option->setting, option->own);
+    double own_s = studied * place->work / work, least = HUGE_VAL;
+    for (size_t k = 0; k < finding->place_count; k++) {
+      const struct place *other = &finding->places[k];
+      const double far = k == i ? 0 : fabs(log(other->work / place->work));
+      if (!isnan(other->own_s) && far < least) {
+        least = far;
+        own_s = other->own_s * place->work / other->work;
+      }
+    }
+    sum += place->point && !isnan(cost) ? cost
+                                        : run_s * (studied > 0 && own_s > 0 ? own_s / studied : place->work / work);
+  }
+  return finding->place_count ? sum / (double)finding->place_count : run_s;
 }
 
 static status note_rate(struct finding *finding, const struct knob *knob, const struct convergence_row *row,
@@ -275,7 +369,6 @@ static status add_option(struct finding *finding, const struct convergence_row *
   struct accuracy *accuracy = finding->accuracy;
   if (!grow_block(&accuracy->options, (accuracy->count + 1) * sizeof *accuracy->options))
     return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
-  snprintf(option->knob, sizeof option->knob, "%.63s", row->knob);
   memcpy(option->marks, finding->marks, sizeof option->marks);
   option->share = finding->quantity.row && field_is_share(finding->quantity.row);
   option->mean = row->mean;
@@ -410,14 +503,16 @@ static status take_option(struct finding *finding, const struct convergence_row 
                                    .extrapolated = extrapolated,
                                    .open = row->at_least,
                                    .error = row->error,
-                                   .point = row->point,
-                                   .run_s = row->cpu};
+                                   .point = row->point};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
+  snprintf(option.knob, sizeof option.knob, "%.63s", row->knob);
+  const struct convergence_row *finest = &finding->finest;
+  const double run_s = !extrapolated ? row->cpu
+                                     : finest->cpu * work_at(finding->campaign, knob, row->setting) /
+                                           work_at(finding->campaign, knob, finest->setting);
+  option.run_s = mean_cost(finding, &option, run_s);
   if (!extrapolated)
     return add_option(finding, row, &option, error);
-  const struct convergence_row *finest = &finding->finest;
-  option.run_s = finest->cpu * work_at(finding->campaign, knob, row->setting) /
-                 work_at(finding->campaign, knob, finest->setting);
   return option.run_s > 0 ? add_option(finding, finest, &option, error) : STATUS_OK;
 }
 
@@ -480,6 +575,8 @@ static status read_study(struct finding *finding, struct store *store, const str
   finding->store = store;
   scene_free(finding->scene);
   finding->scene = scene_copy(scene);
+  if (!finding->place_count)
+    TRY(read_places(finding, store, error));
   TRY(ask_doubts_results(store, finding->quantity.column, finding->results, error));
   TRY(store_point_find(store, scene, &point, error));
   finding->point = point;
@@ -487,7 +584,8 @@ static status read_study(struct finding *finding, struct store *store, const str
   if (point)
     TRY(read_parts(finding, error));
   for (size_t pass = 0; point && pass < sizeof passes / sizeof passes[0]; pass++) {
-    ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, finding->quantity.column, error);
+    ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, finding->quantity.column, true,
+                                           error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
       TRY(passes[pass](finding, &row, error));
     TRY(answer_end(&levels));
@@ -534,7 +632,7 @@ static status need_at(const struct finding *finding, struct store *store, const 
   TRY(store_point_find(store, scene, &point, error));
   if (!point || point == finding->point)
     return STATUS_OK;
-  ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, error);
+  ANSWER levels = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, true, error);
   for (struct convergence_row level; ask_convergence_next(&levels, &level);)
     if (level.n > 0 && isfinite(level.error) &&
         (chosen->own ? level.base
@@ -775,7 +873,7 @@ static status is_studied(const struct finding *finding, const struct advised *st
   if (!point)
     return STATUS_OK;
   ANSWER levels = ask_convergence_levels(finding->store, point, scene->kind->results_version, finding->quantity.column,
-                                         error);
+                                         false, error);
   const bool down = finer_by(study->knob[0]) < 1;
   for (struct convergence_row row; ask_convergence_next(&levels, &row);) {
     const double setting = strtod(row.setting, NULL) * (down ? 1 - 1e-5 : 1 + 1e-5);
@@ -1027,6 +1125,8 @@ static status advise(struct finding *finding, struct error *error) {
 static void release(struct finding *finding) {
   scene_free(finding->scene);
   free(finding->parts);
+  free(finding->places);
+  free(finding->costs);
   free(finding->seen);
 }
 
@@ -1335,7 +1435,7 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
     words_print(stdout, "",
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
-                "point_cpu: by the runs of the study. run_cost: against the smallest error");
+                "point_cpu: by the runs of the study, mean over the points. run_cost: against the smallest error");
     if (*accuracy.marked && accuracy.chosen < accuracy.count)
       words_print(stdout, "", "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: %s",
                   accuracy.marked);

@@ -39,7 +39,7 @@ struct accuracy_option {
   int64_t seeds;    /* of a point: the fewest that reach the accuracy, or as many as the time allows; 0: none do */
   double total;     /* error, beyond if known, and half width of the 95 % interval of the mean of so many seeds; NaN
                        when seeds is 0 */
-  double run_s;     /* processor time of a run, s */
+  double run_s;     /* processor time of a run, s: mean over the points */
   double cpu_s;     /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
 
   char marks[ACCURACY_MARKS]; /* of the level's runs, of an extrapolated one those of the finest: "3 of 4 runs of the
@@ -49,7 +49,7 @@ struct accuracy_option {
 struct accuracy {
   struct accuracy_option *options; /* owned; by cpu_s, for a time by total; then those that do not reach it, by error */
   size_t count;
-  double point_s; /* processor time that a point may cost, s; NaN: an accuracy is given, not a time */
+  double point_s; /* processor time that a point may cost in the mean, s; NaN: an accuracy is given, not a time */
   size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does. All
                      are in the order of convergence_order() */
   char advice[1600];  /* how to reach the accuracy, where no option does */

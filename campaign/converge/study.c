@@ -206,7 +206,7 @@ status study_errors(const struct study *study, size_t from, size_t quantity, str
                     struct study_found *found, struct error *error) {
   const struct study_ladder *first = &study->ladder[from];
   ANSWER levels = ask_convergence_levels(store, first->base_point, first->base->kind->results_version,
-                                         study->quantity[quantity].column, error);
+                                         study->quantity[quantity].column, true, error);
   for (struct convergence_row stored; ask_convergence_next(&levels, &stored);)
     for (size_t i = 0; i < count; i++)
       for (size_t l = 0; l < found[i].count; l++) {
@@ -262,7 +262,7 @@ static status add_finer(const struct study_ladder *ladder, const struct study_fo
 status study_is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
                         bool *smaller, struct error *error) {
   ANSWER levels = ask_convergence_levels(store, ladder->base_point, ladder->base->kind->results_version,
-                                         found->rows[0].quantity, error);
+                                         found->rows[0].quantity, false, error);
   size_t asked = 0, there = 0;
   for (size_t l = 0; l < found->count; l++)
     asked += found->rows[l].n > 0;

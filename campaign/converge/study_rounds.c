@@ -325,7 +325,7 @@ static status tell_replaced(const struct rounds *rounds, struct store *store, st
     const char *knob = ladder->levels.knob->name;
     int64_t before = 0;
     ANSWER levels = ask_convergence_levels(store, ladder->base_point, ladder->base->kind->results_version,
-                                           study->quantity[0].column, error);
+                                           study->quantity[0].column, false, error);
     for (struct convergence_row row; ask_convergence_next(&levels, &row);)
       if (strcmp(row.knob, knob) == 0 && row.n > before)
         before = row.n;

@@ -561,7 +561,7 @@ status ask_resolution_of_exponents(struct store *store, bool *studied, struct er
 }
 
 struct answer ask_convergence_levels(struct store *store, int64_t base_point, int results_version, const char *quantity,
-                                     struct error *error) {
+                                     bool errors, struct error *error) {
   sqlite3_str *columns = sqlite3_str_new(NULL);
   for (size_t i = 0; i < convergence_table.count; i++) {
     char name[FIELD_TEXT_SIZE];
@@ -569,16 +569,17 @@ struct answer ask_convergence_levels(struct store *store, int64_t base_point, in
     sqlite3_str_appendf(columns, "%sc.\"%w\"", i ? ", " : "", name);
   }
   char *list = sqlite3_str_finish(columns); /* NULL, no memory, is an empty list: the question then fails */
-  OWNED char *told = NULL;
-  FILE *out = text_open(&told);
-  views_resolution_levels(out);
-  text_close_small(out, &told);
+  OWNED char *told = errors ? of_parts("") : memory_small_text("");
   return answer_to(
       store, error,
-      "%s SELECT %z, t.half_width, t.verdict, c.point_id FROM convergence c LEFT JOIN told t USING (base_point_id, "
-      "results_version, quantity, knob, level) WHERE c.base_point_id = %lld AND c.results_version = %d AND "
-      "c.quantity = %Q ORDER BY c.knob, c.level",
-      told, list, (long long)base_point, results_version, quantity);
+      "%s SELECT %z, %s WHERE %lld IN (0, c.base_point_id) AND c.results_version = %d AND c.quantity = %Q ORDER BY "
+      "c.base_point_id, c.knob, c.level",
+      told, list,
+      errors
+          ? "t.half_width, t.verdict, c.point_id, c.base_point_id FROM convergence c LEFT JOIN told t USING (point_id, "
+            "results_version, quantity)"
+          : "NULL, NULL, c.point_id, c.base_point_id FROM convergence c",
+      (long long)base_point, results_version, quantity);
 }
 
 bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
@@ -596,6 +597,7 @@ bool ask_convergence_next(struct answer *answer, struct convergence_row *row) {
   row->error = answer_real(answer, convergence_table.count);
   row->at_least = ask_resolution_verdict(answer_text(answer, convergence_table.count + 1)) > ASK_RESOLUTION_KNOWN;
   row->point = answer_integer(answer, convergence_table.count + 2);
+  row->base_point = answer_integer(answer, convergence_table.count + 3);
   return true;
 }
 
@@ -880,6 +882,11 @@ status ask_run_wall_time(struct store *store, const uint8_t identity[16], double
     *cpu_s = answer_real(&answer, 1);
   }
   return answer_end(&answer);
+}
+
+struct answer ask_run_costs(struct store *store, int results_version, struct error *error) {
+  return answer_to(store, error, "SELECT point_id, avg(cpu_time) FROM run WHERE results_version = %d GROUP BY point_id",
+                   results_version);
 }
 
 status ask_run_wall_times(struct store *store, const char *scene, uint64_t *count, double *sum, double *most,

@@ -239,9 +239,10 @@ status ask_resolution_of_exponents(struct store *store, bool *studied, struct er
 /* ---- Results of convergence studies: the rows of table convergence. ---- */
 
 /* The levels of all knobs of the scene that was studied as `base_point`, for one quantity (a column of the view runs),
- * knob by knob, coarse to fine, each with its error of the view resolution. No rows for a scene without a study. */
+ * knob by knob, coarse to fine, with `errors` each with its error of the view resolution. No rows for a scene without a
+ * study. base_point 0: of all scenes. */
 struct answer ask_convergence_levels(struct store *store, int64_t base_point, int results_version, const char *quantity,
-                                     struct error *error);
+                                     bool errors, struct error *error);
 /* The next level. False at the end and after an error; then answer_end(). */
 bool ask_convergence_next(struct answer *answer, struct convergence_row *row);
 
@@ -372,6 +373,8 @@ status ask_run_ejecta(struct store *store, int64_t run_id, struct ejecta *ejecta
 /* Wall time and processor time of a stored run in s. NaN: it is not there. */
 status ask_run_wall_time(struct store *store, const uint8_t identity[16], double *seconds, double *cpu_s,
                          struct error *error);
+/* Rows of point and mean processor time (s) of its runs. */
+struct answer ask_run_costs(struct store *store, int results_version, struct error *error);
 /* Wall times of all stored runs of a scene, by its name: number, sum and longest; and the sum of their processor times.
  */
 status ask_run_wall_times(struct store *store, const char *scene, uint64_t *count, double *sum, double *most,

@@ -171,9 +171,9 @@ status store_set_convergence(struct store *store, const struct store_convergence
 status store_rank_convergence(struct store *store, struct error *error) {
   OWNED char *rank = NULL;
   FILE *out = text_open(&rank);
-  views_resolution_levels(out);
+  views_resolution_parts(out);
   fputs("UPDATE convergence AS c SET error = t.half_width FROM convergence l LEFT JOIN told t\n"
-        "  USING (base_point_id, results_version, quantity, knob, level) WHERE (l.base_point_id, l.results_version,\n"
+        "  USING (point_id, results_version, quantity) WHERE (l.base_point_id, l.results_version,\n"
         "    l.knob, l.quantity, l.level) = (c.base_point_id, c.results_version, c.knob, c.quantity, c.level);\n"
         "UPDATE convergence AS c SET frontier = ifnull(cpu + error < 9e999, 0) AND NOT EXISTS (SELECT 1 FROM "
         "convergence o\n"

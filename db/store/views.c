@@ -366,10 +366,8 @@ static void write_means(FILE *out) {
 }
 
 /* The one place that knows the error of a setting; every screen asks it. For every point and quantity with a study the
- * parts of the knobs: the error that each knob leaves, taken at the point or, when the point is no level of the knob,
- * at the scene's own setting. Where that setting has no error, the largest one of the knob's levels counts and is no
- * bound. Named settings: the error of their reference, which takes the knobs at its own values, and how far they are
- * from it. */
+ * parts of all knobs of its studies: the error that each knob leaves at the setting that the point has. Named settings:
+ * the error of their reference, which takes the knobs at its own values, and how far they are from it. */
 void views_resolution_parts(FILE *out) {
   fputs("WITH share (quantity) AS (VALUES ", out);
   write_shares(&outcome_table, "", out);
@@ -380,31 +378,10 @@ void views_resolution_parts(FILE *out) {
   fprintf(out, "),\n%s", views_resolution_sql);
 }
 
-/* The sum of the parts with its verdict. No error of a share is larger than `most`, its distance from the farther end
- * of 0 to 1. */
-static void write_bounded(const char *most, FILE *out) {
-  fprintf(
-      out,
-      "min(w.error, %1$s) AS half_width,\n  CASE WHEN w.error > %1$s THEN 'known' WHEN diverges THEN 'diverges' WHEN "
-      "NOT w.open THEN 'known'\n    WHEN w.error = 0 THEN 'no-difference' ELSE 'at-least' END AS verdict",
-      most);
-}
-
-static const char is_told[] = "w.error > 0 OR w.open < 2"; /* with a knob that never ran, at least 0 tells nothing */
-
-void views_resolution_levels(FILE *out) {
-  views_resolution_parts(out);
-  fputs(", told AS (SELECT c.base_point_id, c.knob, c.level, w.point_id, w.results_version, w.quantity, ", out);
-  write_bounded("iif(w.most < 9e999, coalesce(max(c.mean, 1 - c.mean), w.most), 9e999)", out);
-  fprintf(out, "\nFROM convergence c JOIN whole w USING (point_id, results_version, quantity) WHERE %s)\n", is_told);
-}
-
 static void write_resolution(struct view *view) {
   fputs("resolution AS -- what finer settings may change in a result, for every point that was studied\n", view->out);
   views_resolution_parts(view->out);
-  fputs("SELECT point_id, results_version, quantity, ", view->out);
-  write_bounded("most", view->out);
-  fprintf(view->out, "\nFROM whole w WHERE %s;\n", is_told);
+  fputs("SELECT * FROM told;\n", view->out);
 }
 
 static void write_points(struct view *view) {

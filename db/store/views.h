@@ -81,11 +81,8 @@ struct sample_range views_range(const char *column);
  * the half width eN and the verdict vN of the view resolution; NULL if not studied. */
 void views_statistics_resolution(size_t count, const char *const *names, FILE *out);
 
-/* SQL of "WITH ...", whose table `part` has what each knob leaves at each point, and `whole` the sums. */
+/* SQL of "WITH ...", whose table `part` has what each knob leaves at each point, and `told` is the view resolution. */
 void views_resolution_parts(FILE *out);
-/* The same with the table `told`: half_width and verdict of each level of the table convergence, of a share bounded by
- * the mean of this row. */
-void views_resolution_levels(FILE *out);
 
 /* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom: sample_student()
  * for tools without our functions, within 5e-6. */

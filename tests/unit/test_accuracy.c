@@ -252,6 +252,48 @@ TEST(the_study_with_the_finest_level_counts) {
   campaign_free(second);
 }
 
+/* Every setting has the parts of all knobs of its studies, with a bound or without. A time step that a study had no
+ * time for, or that is finer than all its levels, has the error of the next coarser level; one that is coarser than all
+ * has the largest. */
+TEST(every_setting_has_the_parts_of_all_knobs) {
+  static const struct {
+    const char *step;
+    double left, beyond;
+  } cases[] = {{"0.5 us", 0.03, 0.04 / (sqrt(2) - 1)},
+               {"0.7 us", 0.03, 0.04 / (sqrt(2) - 1)},
+               {"0.25 us", 0.03, 0.04 / (sqrt(2) - 1)},
+               {"2 us", 0.04, 0.04 / (sqrt(2) - 1)},
+               {"8 us", 0.05, NAN}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[200];
+    snprintf(text, sizeof text, HEAD "set: {fidelity.time_step: %s}\naccuracy: {within: 0.3}\n", cases[i].step);
+    struct campaign *first = campaign_of(HEAD "accuracy: {within: 0.3}\n"), *second = campaign_of(text);
+    struct store *store = NULL;
+    OWNED_BY(accuracy_clear) struct accuracy accuracy;
+    OK(store_open_writer(fixture_path(path, "all-knobs"), &store, NULL, 0, &error));
+    add_study(store, first, "time_step", 4,
+              (const struct level[]){{"4e-6", 0.05, 1e-4, 3, false, true, 4e-6},
+                                     {"2e-6", 0.04, 1e-4, 5, false, true, 2e-6},
+                                     {"1e-6", 0.03, 1e-4, 10, true, true, 1e-6},
+                                     {"5e-7", NAN, NAN, NAN, false, true, 5e-7}});
+    add_study(store, second, "grains", 3,
+              (const struct level[]){{"0.02", 0.3, 1e-4, 5, false, false, 0.02},
+                                     {"0.01069", 0.2, 1e-4, 10, true, false, 0.01069},
+                                     {"0.0075", 0.1, 1e-4, 20, false, false, 0.0075}});
+    OK(store_close(store, &error));
+    OK(accuracy_find(second, "t.yaml", path, &accuracy, &error));
+    assert_int_equal(accuracy.count, 3);
+    for (size_t o = 0; o < 3; o++) {
+      const struct accuracy_option *option = &accuracy.options[o];
+      const double grains = option->own ? 0.2 : strcmp(option->setting, "0.02") == 0 ? 0.3 : 0.1;
+      assert_true(option->open && fabs(option->error - grains - cases[i].left) < 1e-12);
+      assert_true(isnan(cases[i].beyond) ? isnan(option->beyond) : fabs(option->beyond - cases[i].beyond) < 1e-12);
+    }
+    campaign_free(first);
+    campaign_free(second);
+  }
+}
+
 /* The advice names the knob that leaves most of the smallest error, which is one with the scene's own grains (the finer
  * ones have too few results), and what it leaves there. What may lie beyond the levels of the time step, 0.03/(sqrt 2 -
  * 1) = 0.07, counts to it. */
@@ -489,6 +531,34 @@ TEST(the_least_error_in_a_time) {
   assert_true(isnan(accuracy_least(&accuracy, 14, &no_limit)));
   assert_true(accuracy_least(&accuracy, 30, &no_limit) == accuracy.options[accuracy.chosen].total && no_limit);
   campaign_free(campaign);
+}
+
+/* Points share a time by what their runs take: at the second one, the own settings take 30 s by its study, so that the
+ * coarser ones, which it has not studied, take 15 s; the third point has no study, and the nearest work is that of the
+ * second one. */
+TEST(points_cost_what_their_own_runs_cost) {
+  struct store *store = NULL;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
+  CAMPAIGN own = campaign_of(HEAD "accuracy: {processor_time: 210 s}\n");
+  CAMPAIGN second = campaign_of(HEAD "set: {body.diameter: 50 cm}\naccuracy: {within: 1}\n");
+  CAMPAIGN campaign = campaign_of(HEAD "vary: {body.diameter: [40 cm, 50 cm, 52 cm]}\n"
+                                       "accuracy: {processor_time: 210 s}\n");
+  store_study(own, false);
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  add_study(store, second, "time_step", 1, (const struct level[]){{"1e-6", 0.02, 0.02, 30, true, false, 0}});
+  OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
+  const struct engine_kind *kind = campaign->scene->kind;
+  SCENE third = scene_copy(second->scene);
+  OK(scene_set_text(third, "body.diameter", "52 cm", &error));
+  OK(scene_check(third, &error));
+  const double nearest = kind->work(third->inputs) / kind->work(second->scene->inputs);
+  for (size_t i = 0; i < accuracy.count; i++) {
+    const struct accuracy_option *option = &accuracy.options[i];
+    const double studied = option->own ? 10 : strcmp(option->setting, "2e-6") == 0 ? 5 : 40;
+    assert_true(fabs(option->run_s - studied * (1 + 3 + 3 * nearest) / 3) < 1e-9 * studied);
+    assert_true(option->seeds == 0 || (double)option->seeds * 3 * option->run_s <= 210);
+  }
 }
 
 /* Settings without a bound of their error count by its number, as all others: more time gives no larger error, and half

@@ -417,7 +417,7 @@ TEST(a_level_has_the_errors_of_the_other_knobs) {
   assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && fabs(found.half_width - 0.06) < 1e-12);
   /* The levels have the same error, as studies of other knobs change it later, too. */
   studied(store, point, "grains", 0.08, false, LIMIT_SEEN);
-  ANSWER levels = ask_convergence_levels(store, point, fixture_kind.results_version, "largest_fraction", &error);
+  ANSWER levels = ask_convergence_levels(store, point, fixture_kind.results_version, "largest_fraction", true, &error);
   struct convergence_row row;
   assert_true(ask_convergence_next(&levels, &row));
   assert_true(row.base && row.at_least && fabs(row.error - 0.09) < 1e-12);
@@ -434,31 +434,35 @@ TEST(a_level_has_the_errors_of_the_other_knobs) {
   OK(store_close(store, &error));
 }
 
-/* No error of a share is larger than its mean, or 1 less its mean, whichever is farther: the mean of the same row. */
-TEST(a_row_has_the_bound_of_its_own_mean) {
-  static const double means[] = {0.75, 0.7, 0.4}; /* of studies with 4, 8 and 3 seeds */
+/* A setting has one error, also where its studies have means of their own: no error of a share is larger than its mean,
+ * or 1 less its mean if that is more, by all runs. */
+TEST(a_setting_has_one_bound) {
   char path[64];
   struct store *store = NULL;
   OK(store_open_writer(fixture_path(path, "bound"), &store, NULL, 0, &error));
   OK(fixture_populate(store, 2, 1, 3, false, &error));
   const int64_t point = integer(store, "SELECT min(point_id) FROM run");
   struct convergence_row row;
+  struct ask_resolution found;
   field_defaults(&convergence_table, &row);
   for (size_t i = 0; i < 3; i++) {
     row.n = (const int64_t[]){4, 8, 3}[i];
-    row.mean = means[i];
+    row.mean = (const double[]){0.75, 0.7, 0.4}[i];
     row.resolution = 0.5;
     add_level(store, 0, point, (const char *const[]){"grains", "stop", "time_step"}[i], &row, LIMIT_SEEN);
   }
   OK(store_rank_convergence(store, &error));
-  ANSWER levels = ask_convergence_levels(store, point, fixture_kind.results_version, "largest_fraction", &error);
+  OK(ask_resolution(store, point, "largest_fraction", &found, &error));
+  const double mean = number(store, "SELECT largest_fraction_mean FROM points WHERE point_id = 1");
+  assert_true(fabs(found.half_width - fmax(mean, 1 - mean)) < 1e-12);
+  ANSWER levels = ask_convergence_levels(store, point, fixture_kind.results_version, "largest_fraction", true, &error);
   for (size_t i = 0; i < 3; i++) {
     assert_true(ask_convergence_next(&levels, &row));
-    assert_true(!row.at_least && fabs(row.error - fmax(row.mean, 1 - row.mean)) < 1e-12);
+    assert_true(!row.at_least && row.error == found.half_width);
   }
   assert_int_equal(answer_end(&levels), STATUS_OK);
-  assert_int_equal(integer(store, "SELECT count(*) FROM convergence WHERE abs(error - max(mean, 1 - mean)) < 1e-12"),
-                   3);
+  assert_true(number(store, "SELECT min(error) FROM convergence") == found.half_width);
+  assert_true(number(store, "SELECT max(error) FROM convergence") == found.half_width);
   OK(store_close(store, &error));
 }
 
