@@ -397,7 +397,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   precursor_speed REAL, -- [m/s] Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival.
   precursor_speed_exact REAL, -- [m/s] Piston: speed of the precursor by the jump conditions.
   precursor_pressure REAL, -- [Pa] Piston: mean pressure between precursor and shock.
-  precursor_pressure_exact REAL, -- [Pa] Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.
+  precursor_pressure_exact REAL, -- [Pa] Piston: exact pressure behind the precursor: that at which pores begin to close, or less when the piston is slow.
   mean_distention REAL, -- [1] Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.
   compaction_mass_fraction REAL, -- [1] Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or more to below 1.01. Off without pores.
   compaction_volume REAL, -- [m^3] Impact: volume that the retained matter lost as its pores closed; off without pores.
@@ -1438,7 +1438,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention_exact', '1', 
 
 INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure', 'Pa', 'Piston: mean pressure between precursor and shock.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: that at which pores begin to close, or less when the piston is slow.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival.', 1);
 
@@ -1744,7 +1744,7 @@ INSERT INTO column_doc VALUES ('runs', 'precursor_distention_exact', '1', 'Pisto
 
 INSERT INTO column_doc VALUES ('runs', 'precursor_pressure', 'Pa', 'Piston: mean pressure between precursor and shock.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: that at which pores begin to close, or less when the piston is slow.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster. Of no use, and maybe below 0, with the warning arrival.', 0);
 

@@ -111,7 +111,7 @@ const struct engine_kind sph_engine = {
     .doc = "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state "
            "and explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast "
            "explain` names at each input.",
-    .results_version = 14,
+    .results_version = 15,
     .inputs = &sph_inputs,
     .results = &sph_results,
     .knobs = knobs,

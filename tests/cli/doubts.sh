@@ -357,4 +357,14 @@ printf '%s\n' 'name: quiet' 'scene: disruption@draft' 'set: {fidelity.particles:
 expect 0 "$clast" run quiet.yaml --quiet
 expect 0 "$clast" stats quiet.db
 says "crosses the target is below 1, or stop.quiet_growth is above 0.01 (clast explain quiet)"
-done_after 135
+# A word of two conditions withholds some results and marks others.
+expect 0 "$clast" explain ejecta.mass_fraction
+tr '\n' ' ' <out | grep -q 'box' && ! grep -qF '(box)' out || fail "box is said to withhold a mass share"
+expect 0 "$clast" explain undamaged_fraction
+grep -qF '(box)' out || fail "box withholds the undamaged mass"
+# A name with a space is that file.
+"$clast" scenes disruption >"my scene.yaml"
+sed 's/^name: .*/name: another/' "my scene.yaml" >my_scene.yaml
+expect 0 "$clast" explain "my scene.yaml"
+grep -q '^disruption' out || fail "explains another file"
+done_after 138

@@ -62,13 +62,13 @@ TEST(grains_too_fast_for_the_step_end_a_run) {
 /* The run was checked for another time step: the step may become unstable after the start. */
 TEST(a_step_beyond_stability_ends_a_run) {
   for (int gear = 0; gear < 2; gear++) {
-    OWNED_BY(dem_run_free_at)
     struct dem_run *run = disc(gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet");
     run->inputs.fidelity.time_step = 4 * run->stable_time_step;
     const uint64_t before = dem_system_steps(run->system);
     frame_advance(&run->frame, 1000);
     assert_true(run->state.frame.finished && run->state.frame.outcome_state != OUTCOME_COMPLETED);
     assert_true(dem_system_steps(run->system) - before <= 1000 && *run->state.frame.message);
+    dem_run_free(run);
   }
 }
 
@@ -160,7 +160,7 @@ TEST(doubts_are_in_the_result) {
 
 /* A drift of 1.2 % within a bound of 2 % is accepted, and reported. */
 TEST(drift_within_a_wide_bound_is_flagged) {
-  OWNED_BY(dem_run_free_at) struct dem_run *run = disc("fidelity.energy_bound=50 %");
+  struct dem_run *run = disc("fidelity.energy_bound=50 %");
   struct outcome outcome;
   struct dem_results results;
   OWNED struct fragment *fragments = NULL;
@@ -169,6 +169,7 @@ TEST(drift_within_a_wide_bound_is_flagged) {
   frame_advance(&run->frame, LATE);
   OK(dem_report_finish(run, &outcome, &results, &fragments, &count, &error));
   assert_string_equal(outcome.warnings, "drift"); /* the run goes on: it is not cut */
+  dem_run_free(run);
 }
 
 /* The closed ledger books what contacts give as work, so a drift does not show it: the printed law is no gradient, and

@@ -228,13 +228,14 @@ static void look_at_fields(size_t op) {
 TEST(fields_are_kept_before_their_row) {
   struct play play = {.slots = 2};
   struct driver_summary summary;
-  CAMPAIGN campaign = play_campaign(2, 2, 8);
+  struct campaign *campaign = play_campaign(2, 2, 8);
   campaign->keep = CAMPAIGN_KEEP_ALL;
   begin();
   assert_int_equal(play_once(&play, campaign, "power-now/a.db", &summary), STATUS_OK);
   disk_end();
   assert_int_equal(summary.fields_written, 32);
   cut_everywhere(10, look_at_fields);
+  campaign_free(campaign);
   free(play.says);
 }
 

@@ -247,7 +247,7 @@ TEST(a_set_input_does_not_vary) {
   fputs(HEAD "vary: {charge.energy: [1 kJ/m, 2 kJ/m], strain: {linked: energy, values: [1 %, 2 %]}}\n", linked);
   fclose(linked);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    CAMPAIGN campaign = NULL;
+    struct campaign *campaign = NULL;
     const struct campaign_changes changes = {1, &cases[i].change, 0, 0};
     if (cases[i].points == 0) {
       assert_int_equal(campaign_load_changed("t-linked.yaml", &changes, &campaign, &error), STATUS_USAGE);
@@ -256,9 +256,11 @@ TEST(a_set_input_does_not_vary) {
     OK(campaign_load_changed("t-layer.yaml", &changes, &campaign, &error));
     assert_int_equal(points_of(campaign), cases[i].points);
     assert_non_null(strstr(campaign->text, cases[i].kept));
-    CAMPAIGN stored = NULL;
+    struct campaign *stored = NULL;
     OK(campaign_parse_stored("t", campaign->text, NULL, &stored, &error));
     assert_int_equal(points_of(stored), cases[i].points);
+    campaign_free(stored);
+    campaign_free(campaign);
   }
   remove("t-layer.yaml");
   remove("t-linked.yaml");

@@ -266,11 +266,12 @@ TEST(fields_are_kept_as_asked) {
   campaign->per_point = 9;
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(files_in(kept), 18);
-  STORE store = NULL;
+  struct store *store = NULL;
   OK(store_open_reader(path, &store, &error));
   if (store_check(store, print_line, NULL, &error) !=
       STATUS_OK) /* every file it names is there, and the sums are right */
     fail_msg("%s", error.message);
+  store_close(store, NULL);
   free(play.says);
 }
 

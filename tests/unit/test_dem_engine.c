@@ -71,7 +71,7 @@ TEST(explosion_starts_as_the_paper_says) {
       fail_msg("%s: scene %g, default %g", dem_inputs.rows[i].path, a.number, b.number);
   }
   for (uint64_t seed = 0; seed < 20; seed++) {
-    OWNED_BY(dem_run_free_at) struct dem_run *run = NULL;
+    struct dem_run *run;
     OK(dem_run_create(&inputs, seed, &run, &error));
     double momentum[2], magnitude, speed = 0;
     dem_run_momentum(run, momentum, &magnitude);
@@ -95,6 +95,7 @@ TEST(explosion_starts_as_the_paper_says) {
     assert_in_range(moving, 3, 14);
     assert_true(speed / (double)moving > 100 && speed / (double)moving < 300); /* table 1: about 200 m/s */
     assert_in_range(n, 1060, 1140);                                            /* table 1: about 1100 */
+    dem_run_free(run);
   }
 }
 
@@ -142,7 +143,7 @@ TEST(ring_starts_as_described) {
   const double outer = inputs.body.diameter / 2, inner = outer - inputs.body.wall;
   assert_true(fabs(dem_inputs_hole(&inputs) / inner - 1) < 1e-12);
   for (uint64_t seed = 0; seed < 5; seed++) {
-    OWNED_BY(dem_run_free_at) struct dem_run *run = NULL;
+    struct dem_run *run;
     assert_int_equal(dem_run_create(&inputs, seed, &run, NULL), STATUS_OK);
     double momentum[2], magnitude, mass = 0, x = 0, y = 0;
     dem_run_momentum(run, momentum, &magnitude);
@@ -165,6 +166,7 @@ TEST(ring_starts_as_described) {
     assert_true(fabs(mass / (inputs.grain.density * M_PI * (outer * outer - inner * inner)) - 1) < 0.03);
     const double energy = mass * 40 * 40 * (outer * outer + inner * inner) / 4;
     assert_true(fabs(run->state.frame.energy_input / energy - 1) < 0.01);
+    dem_run_free(run);
   }
 }
 
@@ -172,10 +174,11 @@ TEST(ring_starts_as_described) {
 TEST(rings_collide) {
   struct dem_inputs inputs = DEM_CASE("disc-collision", "body.wall=3 cm", "collision.speed=20 m/s",
                                       "threshold.breaking=false", "stop.end_time=3 ms");
-  RAN ran = run_case_run(&dem_engine, &inputs, 1);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 1);
   assert_int_equal(ran.count, 2);
   assert_true(ran.outcome.energy_error < 1e-3);
   assert_true(fabs((double)ran.results.dem.grains / dem_inputs_grains(&inputs) - 1) < 0.05);
+  free(ran.fragments);
 }
 
 static void refuse(struct dem_inputs inputs, const char *word) {
@@ -231,9 +234,10 @@ TEST(the_estimated_step_is_that_of_the_least_stable_body) {
     struct dem_inputs inputs = DEM_CASE("disc-explosion", setting[i], "body.diameter=12 cm");
     double least = HUGE_VAL;
     for (uint64_t seed = 1; seed <= 20; seed++) {
-      OWNED_BY(dem_run_free_at) struct dem_run *run = NULL;
+      struct dem_run *run;
       OK(dem_run_create(&inputs, seed, &run, &error));
       least = fmin(least, run->stable_time_step / dem_describe_stable_step(&inputs));
+      dem_run_free(run);
     }
     assert_true(least > 0.9 && least < 1.33);
   }
@@ -265,16 +269,17 @@ static struct dem_inputs small(void) {
 
 TEST(chunks_do_not_matter) {
   struct dem_inputs inputs = small();
-  RAN whole = run_case_run(&dem_engine, &inputs, 3);
+  struct ran whole = run_case_run(&dem_engine, &inputs, 3);
   void *run;
   assert_int_equal(dem_engine.prepare(&inputs, 3, &run, NULL), STATUS_OK);
   run_case_same(&dem_engine, &whole, run_case_end(&dem_engine, run, 0));
   dem_engine.free(run);
+  free(whole.fragments);
 }
 
 TEST(stop_rules) {
   struct dem_inputs inputs = small();
-  RAN ran = run_case_run(&dem_engine, &inputs, 3);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
   assert_true(ran.results.dem.broken > 10);
   assert_int_equal(ran.results.dem.broken, ran.results.dem.broken_stretch + ran.results.dem.broken_bend);
   if (ran.outcome.state == OUTCOME_COMPLETED) {
@@ -316,6 +321,7 @@ TEST(stop_rules) {
   inputs.threshold.strain = inputs.threshold.angle = 1e-9;
   ran = run_case_run(&dem_engine, &inputs, 3);
   assert_true(ran.outcome.dust_fraction > 0.5);
+  free(ran.fragments);
 }
 
 /* The report's figures from the ledger, compared with their definition: bounds alone do not detect a figure that is ten
@@ -323,8 +329,8 @@ TEST(stop_rules) {
 TEST(figures_by_hand) {
   const struct dem_inputs cases[] = {small(), DEM_CASE("compression", "body.columns=8", "body.rows=12")};
   for (int c = 0; c < 2; c++) {
-    OWNED_BY(dem_run_free_at) struct dem_run *run = NULL;
-    RAN ran = {0};
+    struct dem_run *run;
+    struct ran ran = {0};
     double translation = 0;
     assert_int_equal(dem_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
     const struct dem_ledger first = dem_system_ledger(run->system);
@@ -346,6 +352,8 @@ TEST(figures_by_hand) {
     assert_true(last.kinetic - rigid > 1e-3 * input); /* the rest of the kinetic energy is motion inside fragments */
     assert_true(fabs(ran.results.dem.energy.vibration - (last.kinetic - rigid)) < 1e-12 * last.kinetic);
     assert_true(translation > 0 && fabs(ran.outcome.kinetic_energy_share / (translation / input) - 1) < 1e-12);
+    free(ran.fragments);
+    dem_run_free(run);
   }
 }
 
@@ -354,9 +362,9 @@ TEST(completed_needs_the_least_time) {
   struct dem_inputs inputs = small();
   inputs.stop.quiet_time = 2e-5;
   inputs.stop.least_time = 0;
-  RAN paper = run_case_run(&dem_engine, &inputs, 3);
+  struct ran paper = run_case_run(&dem_engine, &inputs, 3);
   inputs.stop.least_time = 1e-3;
-  RAN later = run_case_run(&dem_engine, &inputs, 3);
+  struct ran later = run_case_run(&dem_engine, &inputs, 3);
   print_message("complete at %.4g s by the paper's rule, at %.4g s with a least time\n", paper.outcome.time,
                 later.outcome.time);
   assert_int_equal(paper.outcome.state, OUTCOME_COMPLETED);
@@ -364,6 +372,8 @@ TEST(completed_needs_the_least_time) {
   assert_true(paper.outcome.time < 0.5e-3 && later.outcome.time > 1e-3 - 1e-9 && later.outcome.time < 2e-3);
   /* breaks after the paper's rule has ended the run */
   assert_true(later.results.dem.broken > paper.results.dem.broken);
+  free(paper.fragments);
+  free(later.fragments);
 }
 
 /* With a threshold that no beam reaches, the other term is the larger one of every break. */
@@ -371,10 +381,11 @@ TEST(breaks_are_told_apart) {
   for (int bend = 0; bend < 2; bend++) {
     struct dem_inputs inputs = small();
     *(bend ? &inputs.threshold.strain : &inputs.threshold.angle) = 1e3;
-    RAN ran = run_case_run(&dem_engine, &inputs, 3);
+    struct ran ran = run_case_run(&dem_engine, &inputs, 3);
     assert_true(ran.results.dem.broken > 10);
     assert_int_equal(ran.results.dem.broken_bend, bend ? ran.results.dem.broken : 0);
     assert_int_equal(ran.results.dem.broken_stretch, bend ? 0 : ran.results.dem.broken);
+    free(ran.fragments);
   }
 }
 
@@ -383,15 +394,17 @@ TEST(finality_is_what_broke_late) {
   struct dem_inputs inputs = small();
   inputs.stop.quiet_time = 1;
   inputs.stop.end_time = 1e-3;
-  RAN whole = run_case_run(&dem_engine, &inputs, 3);
+  struct ran whole = run_case_run(&dem_engine, &inputs, 3);
   inputs.stop.end_time = 0.5e-3;
-  RAN half = run_case_run(&dem_engine, &inputs, 3);
+  struct ran half = run_case_run(&dem_engine, &inputs, 3);
   const double loss = half.outcome.largest_fraction - whole.outcome.largest_fraction;
   print_message("M_1/M %.4f at half of the time, %.4f at its end\n", half.outcome.largest_fraction,
                 whole.outcome.largest_fraction);
   assert_true(loss > 0.005);
   assert_true(fabs(whole.results.dem.largest_loss - loss) < 1e-12); /* sums of masses in other orders */
   assert_int_equal(whole.results.dem.late_breaks, whole.results.dem.broken - half.results.dem.broken);
+  free(whole.fragments);
+  free(half.fragments);
 }
 
 /* Grains so fast that no overlap can stop them. At 400 m/s there are none; 3 km/s is four times the speed of passing.
@@ -400,7 +413,7 @@ TEST(grains_that_pass_are_flagged) {
   for (int fast = 0; fast < 2; fast++) {
     struct dem_inputs block = DEM_CASE("block-impact", "body.columns=8", "body.rows=6", "stop.end_time=0.3 ms",
                                        fast ? "impact.speed=3 km/s" : "impact.speed=400 m/s");
-    RAN ran = run_case_run(&dem_engine, &block, 3);
+    struct ran ran = run_case_run(&dem_engine, &block, 3);
     print_message("passing_share %.3g; %s\n", ran.results.dem.passing_share, ran.outcome.message);
     assert_int_equal(ran.results.dem.passing_share > 1, fast);
     double closing, limit; /* the message has both, in 4 digits */
@@ -409,6 +422,7 @@ TEST(grains_that_pass_are_flagged) {
       assert_true(fabs(ran.results.dem.passing_share * limit / closing - 1) < 1e-3);
     }
     assert_int_equal(strstr(ran.outcome.message, "pass through each other") != NULL, fast);
+    free(ran.fragments);
   }
 }
 
@@ -416,10 +430,11 @@ TEST(grains_that_pass_are_flagged) {
 TEST(neighbour_lists_last) {
   struct dem_inputs inputs = small();
   for (uint64_t seed = 0; seed < 12; seed++) {
-    OWNED_BY(dem_run_free_at) struct dem_run *run = NULL;
+    struct dem_run *run;
     assert_int_equal(dem_run_create(&inputs, seed, &run, NULL), STATUS_OK);
     frame_advance(&run->frame, 300);
     assert_true(run->system->now.rebuilds < 60);
+    dem_run_free(run);
   }
 }
 
@@ -443,7 +458,7 @@ TEST(short_common_sides_do_not_blow_up) {
 TEST(energy_bound_ends_a_run) {
   struct dem_inputs inputs = small();
   inputs.fidelity.energy_bound = 1e-9;
-  RAN ran = run_case_run(&dem_engine, &inputs, 3);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_FAULT);
   assert_non_null(strstr(ran.outcome.message, "fidelity.time_step"));
@@ -468,6 +483,7 @@ TEST(energy_bound_ends_a_run) {
   ran = run_case_run(&dem_engine, &inputs, 3);
   print_message("energy_error %.3g\n", ran.outcome.energy_error);
   assert_true(outcome_is_usable(ran.outcome.state));
+  free(ran.fragments);
 }
 
 /* Grains that pass through others between two steps lose no energy, so the ledger does not show it: two discs that met
@@ -478,15 +494,17 @@ TEST(grains_too_fast_for_the_step_end_a_run) {
   struct dem_inputs block = DEM_CASE("block-impact", "body.columns=8", "body.rows=6", "impact.speed=12 km/s");
   const struct dem_inputs *const inputs[] = {&disc, &discs, &block};
   for (int k = 0; k < 3; k++) {
-    RAN ran = run_case_run(&dem_engine, inputs[k], 3);
+    struct ran ran = run_case_run(&dem_engine, inputs[k], 3);
     assert_int_equal(ran.outcome.state, OUTCOME_TIME_STEP);
     assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_FAULT);
     assert_int_equal(ran.outcome.steps, 0);
     assert_non_null(strstr(ran.outcome.message, "fidelity.time_step"));
+    free(ran.fragments);
   }
   block.impact.speed = 3000; /* 3 mm a step, for grains of 12 mm */
-  RAN ran = run_case_run(&dem_engine, &block, 3);
+  struct ran ran = run_case_run(&dem_engine, &block, 3);
   assert_true(ran.outcome.state == OUTCOME_COMPLETED || ran.outcome.state == OUTCOME_END_TIME);
+  free(ran.fragments);
 }
 
 /* The paper's contact law needs half the step: its force jumps, and the energy drifts by 1 % in explosions of 20 kJ/m.

@@ -147,7 +147,7 @@ static void expect_means(const char *path, const char *by) {
 
 TEST(means_of_a_store) {
   char path[64], half[64], other[64];
-  STORE store = NULL;
+  struct store *store = NULL;
   add_runs(fixture_path(path, "ejecta"), 0, 4);
   expect_means(path, NULL);
   expect_means(path, "material.k");
@@ -178,6 +178,7 @@ TEST(means_of_a_store) {
   OK(store_close(store, &error));
   OK(store_open_writer(fixture_path(half, "ejecta-half"), &store, NULL, 0, &error));
   assert_int_equal(store_merge(store, other, &added, &differing, &error), STATUS_CONTENT);
+  store_close(store, NULL);
 }
 
 /* A store of version 4 has no such table. It is read as it is, keeps all its runs when it is written, and a row that

@@ -74,7 +74,7 @@ static void check_means(struct store *store, sqlite3 *db) {
 
 TEST(test_a_small_store_is_whole) {
   char path[64];
-  STORE store = filled("page-small", 25, path);
+  struct store *store = filled("page-small", 25, path);
   struct ask_page *page = NULL;
   OK(ask_page_make(store, &page, &error));
   sqlite3 *db = opened(page);
@@ -91,6 +91,7 @@ TEST(test_a_small_store_is_whole) {
   assert_true(asked(db, "SELECT count(*) FROM question") > 5);
   sqlite3_close(db);
   ask_page_free(page);
+  store_close(store, NULL);
 }
 
 /* A result that is the same in all runs is left out, but not where a campaign asks for it. */
@@ -98,7 +99,7 @@ TEST(test_the_quantity_of_a_campaign_is_told) {
   for (int asked_for = 0; asked_for < 2; asked_for++) {
     char path[64];
     store_close(filled("page-quantity", 5, path), NULL);
-    STORE store = NULL;
+    struct store *store = NULL;
     struct ask_page *page = NULL;
     sqlite3 *db = NULL;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
@@ -114,13 +115,14 @@ TEST(test_the_quantity_of_a_campaign_is_told) {
     assert_near(asked(db, "SELECT count(*) FROM means WHERE quantity = 'hardest'"), asked_for ? M * K : 0, 0);
     sqlite3_close(db);
     ask_page_free(page);
+    store_close(store, NULL);
   }
 }
 
 TEST(test_a_large_store_is_thinned) {
   char path[64];
   enum { RUNS = 3000 };
-  STORE store = filled("page-large", RUNS, path);
+  struct store *store = filled("page-large", RUNS, path);
   struct ask_page *page = NULL;
   OK(ask_page_make(store, &page, &error));
   sqlite3 *db = opened(page);
@@ -145,6 +147,7 @@ TEST(test_a_large_store_is_thinned) {
   unlink(file);
   sqlite3_close(db);
   ask_page_free(page);
+  store_close(store, NULL);
 }
 
 /* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: the runs are spread evenly; half of them have
@@ -153,7 +156,7 @@ TEST(test_two_modes_are_told) {
   char path[64];
   struct fixture_inputs inputs;
   OWNED struct fixture_run *f = malloc(sizeof *f);
-  STORE store = NULL;
+  struct store *store = NULL;
   fixture_path(path, "page-modes");
   OK(store_open_writer(path, &store, NULL, 0, &error));
   for (int p = 1; p <= 3; p++) { /* point 3: as point 1, but with few runs, which tell no modes */
@@ -182,6 +185,7 @@ TEST(test_two_modes_are_told) {
   assert_true(median > 0.22 && median < 0.28);
   sqlite3_close(db);
   ask_page_free(page);
+  store_close(store, NULL);
 }
 
 TEST(test_a_page_needs_a_place_for_data) {

@@ -223,7 +223,7 @@ TEST(chunks_and_restarts_do_not_matter) {
       SPH_CASE("porous-plate", "fidelity.points=40"),
   };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-    RAN whole = run_case_run(&sph_engine, &cases[c], 3);
+    struct ran whole = run_case_run(&sph_engine, &cases[c], 3);
     void *run;
     bool finished = false;
     assert_int_equal(sph_engine.prepare(&cases[c], 3, &run, NULL), STATUS_OK);
@@ -244,12 +244,13 @@ TEST(chunks_and_restarts_do_not_matter) {
     assert_int_equal(restart_load(&sph_engine, &cases[c], path, &run, &error), STATUS_CONTENT);
     assert_null(run);
     unlink(path);
+    free(whole.fragments);
   }
 }
 
 TEST(stop_rules) {
   struct sph_inputs inputs = SMALL(NULL);
-  RAN ran = run_case_run(&sph_engine, &inputs, 3);
+  struct ran ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
   assert_int_equal(ran.results.sph.stop_reason, SPH_STOP_QUIET);
   assert_true(ran.results.sph.fracture_ceased && ran.results.sph.first_damage > 0);
@@ -318,6 +319,7 @@ TEST(stop_rules) {
   ran = run_case_run(&sph_engine, &inputs, 1);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "energy.clamped"));
+  free(ran.fragments);
 }
 
 /* Errors of energy count relative to mu v^2/2, whichever body moves: that of a boulder in flight would hide them. */

@@ -88,7 +88,7 @@ static size_t drawn(size_t n) {
 TEST(owners_are_nearest) {
   const struct sph_body body = sphere(300);
   struct sph_range range;
-  SPH_PARTICLES *p = make(&body, 0, &range);
+  struct sph_particles *p = make(&body, 0, &range);
   SPH_FLAWS *flaws = flaws_of(&body, p, range, SPH_FLAWS_RANKED, 5, INFINITY);
   const double log_kv = log(5e34) + log(sph_shape_volume(&body.shape));
   OWNED unsigned char *seen = calloc(flaws->count, 1);
@@ -108,6 +108,7 @@ TEST(owners_are_nearest) {
       assert_int_equal(brute(p->n, p->x, p->y, p->z, q, SIZE_MAX), i);
     }
   }
+  sph_particles_free(p);
 }
 
 /* Coarse or fine, a seed means the same flaws: the same strengths at the same places. A flaw of a fine particle belongs
@@ -205,7 +206,7 @@ TEST(ends_have_none) {
                                .density = 2700,
                                .h_over_spacing = NAN};
   struct sph_range range;
-  SPH_PARTICLES *p = make(&rod, 0, &range);
+  struct sph_particles *p = make(&rod, 0, &range);
   struct sph_flaws *with = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, 0.012);
   struct sph_flaws *without = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, INFINITY);
   const double log_kv = log(5e34) + log(sph_shape_volume(&rod.shape));
@@ -237,6 +238,7 @@ TEST(ends_have_none) {
   assert_int_equal(sph_flaws_place(&law, &rod.shape, p, range, -1, &with, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "flaw-free ends"));
   assert_null(with);
+  sph_particles_free(p);
 }
 
 /* Small particles of a graded body are as strong as their size says: with kV_i the expected number below strain 1, k
@@ -281,7 +283,7 @@ TEST(graded_particles_have_their_weakest) {
 TEST(extremes_of_the_law) {
   const struct sph_body body = sphere(60);
   struct sph_range range;
-  SPH_PARTICLES *p = make(&body, 0, &range);
+  struct sph_particles *p = make(&body, 0, &range);
   const double ms[] = {1, 8.5, 200}, ks[] = {1, 1e34, 1e200, 1e300};
   struct sph_flaws *flaws = NULL;
   for (int i = 0; i < 3; i++)
@@ -306,4 +308,5 @@ TEST(extremes_of_the_law) {
   flaws = flaws_of(&one, p, range, SPH_FLAWS_POISSON, 3, INFINITY);
   assert_int_equal(flaws->count, 1);
   sph_flaws_free(flaws);
+  sph_particles_free(p);
 }

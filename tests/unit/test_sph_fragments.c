@@ -219,7 +219,7 @@ TEST(only_one_layer_joins_and_nearest_decides) {
   p->x[5] = 4.5;
   p->x[4] = 3.5;
   p->x[6] = 5.5;
-  OWNED_BY(sph_fragments_clear) struct sph_fragments tie = find(p, &o);
+  struct sph_fragments tie = find(p, &o);
   assert_int_equal(tie.label[5], tie.label[4]);
   sph_fragments_clear(&tie);
   p->mass[6] = 10;
@@ -230,6 +230,7 @@ TEST(only_one_layer_joins_and_nearest_decides) {
   p->x[5] = 4.4999;
   tie = find(p, &o);
   assert_int_equal(tie.label[5], tie.label[4]);
+  sph_fragments_clear(&tie);
 }
 
 TEST(static_strength_breaks) {
@@ -240,7 +241,7 @@ TEST(static_strength_breaks) {
   o.body_count = 1;
   for (size_t i = 0; i < 9; i++)
     p->damage_cbrt[i] = 1e-3; /* cracks have entered all of them */
-  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
+  struct sph_fragments f = find(p, &o);
   assert_int_equal(f.broken, 0);
   assert_int_equal(f.count, 1);
   sph_fragments_clear(&f);
@@ -267,6 +268,7 @@ TEST(static_strength_breaks) {
   f = find(p, &o);
   assert_int_equal(f.part[2], SPH_FRAGMENTS_CORE);
   assert_int_equal(f.broken, 2);
+  sph_fragments_clear(&f);
 }
 
 /* Two blocks in contact are two fragments; a body that is left out is never counted. */
@@ -280,7 +282,7 @@ TEST(bodies_touch_or_are_left_out) {
   }
   o.bodies = bodies;
   o.body_count = 2;
-  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
+  struct sph_fragments f = find(p, &o);
   assert_int_equal(f.count, 2);
   assert_true(f.fragments[0].mass == 6 && f.fragments[1].mass == 4 && f.mass == 10);
   assert_int_equal(f.fragments[1].first, 6);
@@ -292,6 +294,7 @@ TEST(bodies_touch_or_are_left_out) {
   assert_int_equal(f.fragments[0].first, 6);
   assert_int_equal(f.label[0], UINT32_MAX);
   assert_int_equal(f.part[0], SPH_FRAGMENTS_LEFT_OUT);
+  sph_fragments_clear(&f);
 }
 
 static void near(double a, double b, double scale) {
@@ -301,7 +304,7 @@ static void near(double a, double b, double scale) {
 
 TEST(turning_pieces) {
   enum { N = 400 };
-  SPH_PARTICLES *p = make(N, 0);
+  struct sph_particles *p = make(N, 0);
   struct sph_fragments_options o = sph_fragments_default();
   const double spin[3] = {300, -200, 500}, velocity[3] = {10, -20, 5};
   double angular[3] = {0}, trace = 0;
@@ -315,7 +318,7 @@ TEST(turning_pieces) {
     p->vy[i] = velocity[1] + spin[2] * r[0] - spin[0] * r[2];
     p->vz[i] = velocity[2] + spin[0] * r[1] - spin[1] * r[0];
   }
-  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
+  struct sph_fragments f = find(p, &o);
   assert_int_equal(f.count, 1);
   double energy = 0;
   const struct fragment *whole = f.fragments;
@@ -352,6 +355,8 @@ TEST(turning_pieces) {
   assert_int_equal(f.count, 1);
   for (int d = 0; d < 3; d++)
     near(f.fragments[0].spin[d], across[d], 10);
+  sph_fragments_clear(&f);
+  sph_particles_free(p);
 }
 
 /* An ellipsoid of axes 3:2:1.5 cut from a fine lattice has these ratios; ejecta carry their energy relative to it. */
@@ -533,9 +538,9 @@ TEST(far_flung_and_not_finite) {
 }
 
 TEST(nothing_all_dust_all_one) {
-  SPH_PARTICLES *p = make(0, 0);
+  struct sph_particles *p = make(0, 0);
   struct sph_fragments_options o = sph_fragments_default();
-  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
+  struct sph_fragments f = find(p, &o);
   assert_true(f.count == 0 && f.fragments == NULL && f.mass == 0 && isnan(f.axis_ratio[0]));
   sph_fragments_clear(&f);
   sph_particles_free(p);
@@ -554,6 +559,8 @@ TEST(nothing_all_dust_all_one) {
   f = find(p, &o);
   assert_int_equal(f.count, 1);
   assert_true(f.fragments[0].mass == 9 && f.single_mass == 0 && f.core_largest == 9 && f.core_second == 0);
+  sph_fragments_clear(&f);
+  sph_particles_free(p);
 }
 
 /* With the initial smoothing lengths, expanding matter is not linked over larger distances. */
@@ -565,10 +572,11 @@ TEST(h_may_be_the_initial_one) {
     h[i] = 1;
     p->h[i] = 4;
   }
-  OWNED_BY(sph_fragments_clear) struct sph_fragments f = find(p, &o);
+  struct sph_fragments f = find(p, &o);
   assert_int_equal(f.count, 1);
   sph_fragments_clear(&f);
   o.h = h;
   f = find(p, &o);
   assert_int_equal(f.count, 3);
+  sph_fragments_clear(&f);
 }

@@ -2,7 +2,7 @@
 #define CHECK_OWN_MAIN
 #include "tests/support/golden.h"
 
-enum { RESULTS_VERSION = 14 };
+enum { RESULTS_VERSION = 15 };
 #define GOLDEN_SPHERE "533d3e046e12d935ffeeeaf43f012018"
 #define GOLDEN_ROD    "6aae48aab22fee0d5e0a0594652621cc"
 #define GOLDEN_RINGS  "afef6015b2971ed38d03ba0a44e3a789"

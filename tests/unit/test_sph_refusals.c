@@ -80,10 +80,11 @@ TEST(empty_layers_are_refused) {
 TEST(vapour_in_a_slab) {
   const struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.speed=50 km/s",
                                             "stop.end_time=10 us");
-  RAN ran = run_case_run(&sph_engine, &inputs, 1);
+  struct ran ran = run_case_run(&sph_engine, &inputs, 1);
   if (ran.outcome.state != OUTCOME_COMPLETED)
     fail_msg("%s", ran.outcome.message);
   assert_true(ran.outcome.energy_error < 5e-3);
+  free(ran.fragments);
 }
 
 /* At the ends of their ranges inputs give a clear error or a run with an honest status and finite numbers. */
@@ -97,7 +98,7 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
     assert_true(error.status == STATUS_CONTENT && strlen(error.message) > 20);
     return;
   }
-  RAN ran = {0};
+  struct ran ran = {0};
   for (int k = 0; k < (SANITIZED ? 10 : 40) && !finished; k++) /* at most 4000 steps of 170 particles */
     OK(sph_engine.step(made, 100, &finished, &error));
   OK(sph_engine.finish(made, &ran.outcome, &ran.results, &ran.fragments, &ran.count, &error));
@@ -116,6 +117,7 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
     assert_true((fine || !finished) && o->energy_error < 5e-3);
   print_message("%s %s %s %s: state %d, %lld steps, M_1/M %.3f, energy %.2g %s\n", a, b, c, d, o->state,
                 (long long)o->steps, o->largest_fraction, o->energy_error, o->message);
+  free(ran.fragments);
 }
 
 TEST(ends_of_the_ranges) {

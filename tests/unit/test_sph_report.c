@@ -15,12 +15,13 @@ TEST(sound_matter_stays_whole) {
   const struct sph_inputs cases[] = {SMALL("target.fracture=off"),
                                      SMALL("target.material.weibull.m=100", "target.material.weibull.k=1e200 1/m^3")};
   for (int c = 0; c < 2; c++) {
-    RAN ran = run_case_run(&sph_engine, &cases[c], 3);
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
     print_message("M_1/M %.3f, without static strength %.3f, undamaged %.3f\n", ran.outcome.largest_fraction,
                   ran.results.sph.largest.dynamic_fraction, ran.results.sph.undamaged_fraction);
     assert_true(ran.results.sph.largest.dynamic_fraction > 0.9);
     assert_true(ran.outcome.largest_fraction >
                 ran.results.sph.largest.dynamic_fraction - (c == 0 ? 1e-9 : 0.02)); /* near the crater cracks grow */
+    free(ran.fragments);
   }
 }
 
@@ -34,8 +35,9 @@ TEST(few_pores_change_nothing) {
                                            "target.material.porosity.sound_speed=off")};
   double damage[2];
   for (int c = 0; c < 2; c++) {
-    RAN ran = run_case_run(&sph_engine, &cases[c], 3);
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
     damage[c] = ran.results.sph.mean_damage;
+    free(ran.fragments);
   }
   print_message("damage of the solid %.6f, with pores of 1e-7 %.6f\n", damage[0], damage[1]);
   assert_true(damage[0] > 0.05);
@@ -48,7 +50,7 @@ TEST(small_fragments) {
   for (int c = 0; c < 2; c++) { /* a largest fragment of more and of less than 100 particles */
     const struct sph_inputs inputs = SMALL(c ? "impact.speed=6 km/s" : "impact.speed=2 km/s",
                                            "fragments.dust_mass=10 g");
-    RAN ran = run_case_run(&sph_engine, &inputs, 3);
+    struct ran ran = run_case_run(&sph_engine, &inputs, 3);
     double dust = 0;
     for (size_t k = 0; k < ran.count; k++)
       dust += ran.fragments[k].mass < 0.01 ? ran.fragments[k].mass : 0;
@@ -61,6 +63,7 @@ TEST(small_fragments) {
     assert_int_equal(isnan(ran.results.sph.largest.speed), c);
     assert_int_equal(isnan(ran.results.sph.largest.axis_short), c);
     assert_true(isnan(ran.results.sph.second.angle)); /* the second is small in both */
+    free(ran.fragments);
   }
   /* by default a thousandth of the target, however many particles it has */
   const double few = SMALL(NULL).fragments.dust_mass, many = SPH_CASE("basalt-sphere", NULL).fragments.dust_mass;
@@ -168,7 +171,7 @@ TEST(a_share_above_one_is_shown) {
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
   for (int fault = 0; fault < 3; fault++) {
-    RAN ran = {0};
+    struct ran ran = {0};
     if (fault == 1) {
       frame_advance(&run->frame, UINT64_MAX);
       for (int k = 0; k < SPH_LIMITS; k++)
@@ -182,6 +185,7 @@ TEST(a_share_above_one_is_shown) {
     const double share = ran.results.sph.limited.force;
     assert_true(fault == 0 ? isnan(share) : share == (fault == 1 ? 3 : 1));
     assert_true(fault == 0 || ran.results.sph.limited.courant == 0);
+    free(ran.fragments);
   }
   sph_run_free(run);
 }

@@ -185,7 +185,7 @@ TEST(fast_damping) {
   SPH_PARTICLES *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMPING);
   const struct sph_body_physics body = {.material = case_basalt, .strength = true};
   const struct case_parameters parameters = case_parameters_default();
-  SPH_SYSTEM *s = case_system(p, 1, &body, &parameters);
+  struct sph_system *s = case_system(p, 1, &body, &parameters);
   const double courant = 1 / s->now.worst[SPH_LIMIT_COURANT];
   sph_system_free(s);
   for (size_t i = 0; i < p->n; i++)
@@ -199,6 +199,7 @@ TEST(fast_damping) {
    * as damped; sides have that rate in their outermost layer alone */
   assert_true(last.kinetic < 1e-4 * first.kinetic && last.damped > 0.9 * first.kinetic &&
               last.damped < 1.6 * first.kinetic);
+  sph_system_free(s);
 }
 
 /* A block's slack is never above the smallest slack of its particles; when used up it is computed again. So no list

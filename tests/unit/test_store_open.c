@@ -88,7 +88,7 @@ TEST(missing_and_unreachable) {
 
 TEST(empty_file_is_a_new_store) {
   char path[64];
-  STORE store = NULL;
+  struct store *store = NULL;
   FILE *out = fopen(fixture_path(path, "empty"), "w");
   fclose(out);
   assert_int_equal(store_open_reader(path, &store, &error), STATUS_CONTENT);
@@ -96,6 +96,7 @@ TEST(empty_file_is_a_new_store) {
   populated(path);
   OK(store_open_reader(path, &store, &error));
   assert_near(number(store, "SELECT count(*) FROM run"), 40, 0);
+  store_close(store, NULL);
 }
 
 /* A file without a table is an empty file, not an incomplete copy. */

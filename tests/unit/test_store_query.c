@@ -81,7 +81,7 @@ static double largest(const struct fixture_run *f) {
 }
 
 TEST(points_have_mean_scatter_and_interval) {
-  STORE store = reader();
+  struct store *store = reader();
   double sd, mean = two_pass(largest, 7, 1, 1, &sd);
   char sql[300];
   const char *const columns[] = {"largest_fraction_mean", "largest_fraction_sd", "largest_fraction_se",
@@ -94,12 +94,13 @@ TEST(points_have_mean_scatter_and_interval) {
   }
   assert_near(number(store, "SELECT count(*) FROM points WHERE n = 25 AND failed = 0 AND results_version = 3"), M * K,
               0);
+  store_close(store, NULL);
 }
 
 /* The quantile of Student's t in plain SQL against that in C, which is GSL's: exact to ten degrees, then within 5e-6
  * (the first term left out of Cornish & Fisher's expansion). */
 TEST(student_is_students) {
-  STORE store = reader();
+  struct store *store = reader();
   for (int degrees = 1; degrees <= 300; degrees += degrees < 40 ? 1 : 37) {
     char *sql = NULL, number_text[16];
     size_t size = 0;
@@ -113,6 +114,7 @@ TEST(student_is_students) {
     assert_near(number(store, sql), expected, degrees <= 10 ? 1e-11 * expected : 5e-6);
     free(sql);
   }
+  store_close(store, NULL);
 }
 
 /* The interval of a mean in plain SQL against that in C, of shares and of results that end elsewhere or nowhere. */
@@ -122,7 +124,7 @@ TEST(interval_is_that_in_c) {
                                                      {0, 1, true},
                                                      {0, HUGE_VAL, false},
                                                      {-0.25, 1.125, false}};
-  STORE store = reader();
+  struct store *store = reader();
   static const double means[] = {0, 1e-9, 0.02, 0.3, 0.5, 0.97, 1}, deviations[] = {0, 1e-16, 0.003, 0.02, 0.06, 0.3};
   static const size_t numbers[] = {1, 2, 3, 5, 10, 19, 20, 25, 26, 39, 40, 200};
   for (size_t i = 0; i < 7 * 6 * 12 * RANGES; i++) {
@@ -159,6 +161,7 @@ TEST(interval_is_that_in_c) {
     assert_true(isnan(s.low) || (fabs(low - s.low) < 1e-11 && fabs(high - s.high) < 1e-11));
     assert_int_equal(weak, s.weak);
   }
+  store_close(store, NULL);
 }
 
 TEST(spread_of_equal_values_is_zero) {
@@ -174,7 +177,7 @@ TEST(squares_beyond_double_are_withheld) {
   static const char *const factors[] = {"1e-170", "1e170", "1"};
   char path[64];
   for (size_t k = 0; k < 3; k++) {
-    STORE store = NULL;
+    struct store *store = NULL;
     sqlite3 *db = NULL;
     char sql[128];
     OK(store_open_writer(fixture_path(path, "ends"), &store, NULL, 0, &error));
@@ -188,6 +191,7 @@ TEST(squares_beyond_double_are_withheld) {
     assert_near(number(store, "SELECT count(mean_fragment_mass_mean) FROM points"), 4, 0);
     assert_near(number(store, "SELECT count(mean_fragment_mass_sd) FROM points"), k < 2 ? 0 : 4, 0);
     assert_near(number(store, "SELECT count(mean_fragment_mass_hw95) FROM points"), k < 2 ? 0 : 4, 0);
+    store_close(store, NULL);
   }
   fixture_path(path, "ends");
 }
@@ -218,7 +222,7 @@ TEST(scatter_of_exponents) {
 }
 
 TEST(spectra_are_densities) {
-  STORE store = reader();
+  struct store *store = reader();
   assert_near(number(store, "SELECT sum(density * (upper - lower)) FROM spectra WHERE point_id = 3"), 1, 1e-12);
   assert_near(number(store, "SELECT sum(count) FROM spectra WHERE point_id = 3"), RUNS * FIXTURE_FRAGMENTS, 0);
   assert_near(number(store, "SELECT lower FROM spectra WHERE bin = -20"), 1e-2, 0);
@@ -229,12 +233,13 @@ TEST(spectra_are_densities) {
                            "FROM c, (SELECT avg(x) AS m FROM c)");
   assert_true(expected > 0);
   assert_near(number(store, "SELECT count_sd FROM spectra WHERE point_id = 2 AND bin = -15"), expected, 1e-12);
+  store_close(store, NULL);
 }
 
 /* Points are the units of a group that pools over an input; the runs are the units of a point. */
 TEST(groups_say_what_they_pool) {
   struct ask_group_pooled pooled;
-  STORE store = reader();
+  struct store *store = reader();
   struct rows rows = {.count = 0};
   OK(keep(ask_group(store, "m", "hardest, largest_fraction", &pooled, &error), &rows));
   assert_int_equal(rows.count, M);
@@ -286,10 +291,11 @@ TEST(groups_say_what_they_pool) {
   assert_non_null(strstr(error.message, "largest_fraction, second_fraction"));
   assert_int_equal(keep(ask_group(store, "m", "largest_fracton", &pooled, &error), &rows), STATUS_USAGE);
   assert_string_equal(error.message, "Quantity 'largest_fracton' is unknown; did you mean 'largest_fraction'?");
+  store_close(store, NULL);
 }
 
 TEST(only_reading_is_allowed) {
-  STORE store = reader();
+  struct store *store = reader();
   struct rows rows;
   const char *const refused[] = {"DELETE FROM run",
                                  "UPDATE run SET seed = 1",
@@ -324,10 +330,11 @@ TEST(only_reading_is_allowed) {
   assert_string_equal(rows.text, "sum(i)\n15\n");
   OK(ask(store, "SELECT run_id FROM run WHERE run_id < 0", &rows)); /* names also without rows */
   assert_string_equal(rows.text, "run_id\n");
+  store_close(store, NULL);
 }
 
 TEST(time_limit_stops) {
-  STORE store = reader();
+  struct store *store = reader();
   struct rows rows;
   assert_int_equal(keep(answer_to_user(store,
                                        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT max(i) "
@@ -345,10 +352,11 @@ TEST(time_limit_stops) {
                                       0, NULL, 0.05, &error);
   OK(answer_end(&over));
   assert_int_equal(keep(next, &rows), STATUS_STOPPED);
+  store_close(store, NULL);
 }
 
 TEST(every_canned_query_runs) {
-  STORE store = reader();
+  struct store *store = reader();
   struct rows rows = {.count = 0};
   assert_true(ask_canned_count() >= 10);
   for (size_t i = 0; i < ask_canned_count(); i++) {
@@ -374,10 +382,11 @@ TEST(every_canned_query_runs) {
     fail_msg("%s not in %s", first, rows.text);
   assert_null(ask_canned_find("nonsense", &error));
   assert_non_null(strstr(error.message, "point-stats"));
+  store_close(store, NULL);
 }
 
 TEST(our_aggregates) {
-  STORE store = reader();
+  struct store *store = reader();
   struct rows rows;
   assert_int_equal(ask(store, "SELECT median(1)", &rows), STATUS_USAGE); /* not before they are registered */
   OK(ask_register_functions(store, &error));
@@ -388,10 +397,11 @@ TEST(our_aggregates) {
   assert_near(number(store, "SELECT mean(value) FROM json_each('[1.6e308,1.7e308]')"), 1.65e308, 1e294);
   assert_near(number(store, "SELECT mean(NULL) IS NULL AND stdev(value) > 0 FROM json_each('[1e-170,2e-170]')"), 1, 0);
   assert_near(number(store, "SELECT stdev(1) IS NULL AND median(NULL) IS NULL"), 1, 0);
+  store_close(store, NULL);
 }
 
 TEST(parameters_are_bound) {
-  STORE store = reader();
+  struct store *store = reader();
   const struct query_parameter two[] = {{"a", "3"}, {"b", "0.5"}};
   const struct query_parameter text = {"a", "x'; DROP"};
   struct rows rows;
@@ -400,11 +410,12 @@ TEST(parameters_are_bound) {
   OK(keep(answer_to_user(store, "SELECT typeof(:a) = 'text' AS x", 1, &text, 0, &error), &rows));
   assert_string_equal(rows.text, "x\n1\n");
   assert_int_equal(keep(answer_to_user(store, "SELECT :a", 2, two, 0, &error), &rows), STATUS_USAGE);
+  store_close(store, NULL);
 }
 
 /* Answers nest, may be left early, and say nothing after their end. No statement stays open. */
 TEST(answers_close_themselves) {
-  STORE store = reader();
+  struct store *store = reader();
   {
     ANSWER points = answer_to(store, &error, "SELECT point_id FROM point ORDER BY point_id");
     double runs = 0;
@@ -432,6 +443,7 @@ TEST(answers_close_themselves) {
   assert_int_equal(answer_end(&blob), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "run 7"));
   assert_null(sqlite3_next_stmt(store->db, NULL));
+  store_close(store, NULL);
 }
 
 /* A program without the row fidelity.grains computes a campaign; then the program with it computes the same one again:

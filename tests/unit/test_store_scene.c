@@ -46,7 +46,7 @@ static void populate(const char *path) {
 
 TEST(identities_follow_from_the_scenes) {
   char path[64], problems[4000] = "";
-  STORE store = NULL;
+  struct store *store = NULL;
   assert_true(scene_builtin_count() > 0);
   populate(fixture_path(path, "scene"));
   OK(store_open_reader(path, &store, &error));
@@ -56,6 +56,7 @@ TEST(identities_follow_from_the_scenes) {
   OK(answer_number(store, &inputs, &error,
                    "SELECT min((SELECT count(*) FROM point_input i WHERE i.point_id = p.point_id)) FROM point p"));
   assert_true(inputs > 10);
+  store_close(store, NULL);
 }
 
 TEST(a_changed_seed_or_scene_is_found) {
@@ -64,7 +65,7 @@ TEST(a_changed_seed_or_scene_is_found) {
        "UPDATE point SET scene = '{\"engine\": \"dem\", \"nonsense\": 1}' WHERE point_id = 1"};
   for (size_t i = 0; i < sizeof damages / sizeof damages[0]; i++) {
     char path[64], problems[4000] = "";
-    STORE store = NULL;
+    struct store *store = NULL;
     populate(fixture_path(path, "scene-changed"));
     sqlite3 *db = NULL;
     sqlite3_open(path, &db);
@@ -73,6 +74,7 @@ TEST(a_changed_seed_or_scene_is_found) {
     OK(store_open_reader(path, &store, &error));
     assert_int_equal(store_check(store, line, problems, &error), STATUS_CONTENT);
     assert_non_null(strstr(problems, i < 2 ? "run 1: its identity" : "point 1: its scene cannot be read"));
+    store_close(store, NULL);
   }
 }
 
@@ -93,7 +95,7 @@ TEST(results_out_of_range_are_found) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char path[64], problems[4000] = "";
-    STORE store = NULL;
+    struct store *store = NULL;
     populate(fixture_path(path, "scene-range"));
     sqlite3 *db = NULL;
     sqlite3_open(path, &db);
@@ -104,5 +106,6 @@ TEST(results_out_of_range_are_found) {
     const status code = store_check(store, line, problems, &error);
     if (cases[i].word ? code != STATUS_CONTENT || !strstr(problems, cases[i].word) : strstr(problems, "range") != NULL)
       fail_msg("%s: said '%s'", cases[i].damage, problems);
+    store_close(store, NULL);
   }
 }

@@ -214,7 +214,7 @@ TEST(one_column_of_two_rows_is_refused) {
 }
 
 TEST(canned_queries_know_the_real_columns) {
-  STORE store = NULL;
+  struct store *store = NULL;
   OK(store_open_reader("test-store-schema.db", &store, &error));
   for (size_t i = 0; i < ask_canned_count(); i++) {
     const struct query_canned *canned = ask_canned_at(i);
@@ -225,6 +225,7 @@ TEST(canned_queries_know_the_real_columns) {
     if (answer_end(&answer) != STATUS_OK)
       fail_msg("%s: %s", canned->name, error.message);
   }
+  store_close(store, NULL);
 }
 
 int main(int count, char **arguments) {

@@ -108,11 +108,12 @@ TEST(same_run_is_stored_once) {
 TEST(a_full_disk_takes_no_campaign) {
   char path[64];
   static char document[1 << 20];
-  STORE store = writer(fixture_path(path, "full"));
+  struct store *store = writer(fixture_path(path, "full"));
   int64_t campaign;
   memset(document, '#', sizeof document - 1);
   sqlite3_exec(store->db, "PRAGMA max_page_count = 1", NULL, NULL, NULL); /* = as many as there are */
   assert_int_equal(store_add_campaign(store, "c", document, "{}", &campaign, &error), STATUS_IO);
+  store_close(store, NULL);
 }
 
 TEST(batches_commit_by_count_and_close) {
@@ -257,7 +258,7 @@ static int sum_runs(struct store *store, int64_t point, const struct field *row,
 
 TEST(runs_of_a_point_in_order) {
   char path[64];
-  STORE store = writer(fixture_path(path, "point"));
+  struct store *store = writer(fixture_path(path, "point"));
   OK(fixture_populate(store, 1, 2, 10, true, &error));
   double sum;
   assert_int_equal(sum_runs(store, 2, &fixture_result_rows[0], false, &sum), 10);
@@ -273,6 +274,7 @@ TEST(runs_of_a_point_in_order) {
   assert_near(number(store, "SELECT replicate FROM run WHERE fields_path = 'x.h5'"), 3, 0);
   identity[0] ^= 1;
   assert_int_equal(store_set_fields(store, identity, "x.h5", NULL, &error), STATUS_INTERNAL);
+  store_close(store, NULL);
 }
 
 TEST(estimates_are_replaced) {

@@ -140,7 +140,7 @@ TEST(bonded_switches) {
     struct dem_inputs in = fixture_inputs();
     in.contact.bonded = on;
     in.beam.young_modulus = 0.0;
-    DEM_SYSTEM *s = fixture_create(t, &in);
+    struct dem_system *s = fixture_create(t, &in);
     fixture_place(s, 1, 1.49 * h, 0.5 * h, 0.0);
     fixture_evaluate(s);
     /* bonded: S_ref is the common side, so the stiffness is the printed law's Y S / L_c */
@@ -159,5 +159,6 @@ TEST(bonded_switches) {
     assert_true(dem_system_step(s));
     const double reduced = 0.5 * s->mass[0];
     fixture_near(s->c.fx[1], 8.862e8 * 0.01 * h + (on ? reduced * 1e4 : 0.0), 0.0005e8 * 0.01 * h, "damping on bonded");
+    dem_system_free(s);
   }
 }

@@ -255,7 +255,7 @@ TEST(damping_and_friction_as_written) {
     for (int bonded = 0; bonded < 2; bonded++)
       for (uint64_t seed = 1; seed <= 12; seed++) {
         const double cell = 0.01;
-        DEM_TESSELLATION *t = NULL;
+        struct dem_tessellation *t = NULL;
         const struct dem_lattice lattice =
             {.outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
         OK(dem_tessellation_make(&lattice, &t, &error));
@@ -325,6 +325,7 @@ TEST(damping_and_friction_as_written) {
             fixture_near(got[k], (double)f[3 * i + k], 1e-8 * (double)largest * (k == 2 ? cell : 1.0), "force");
           }
         compared += simple;
+        dem_tessellation_free(t);
       }
   print_message("          %d of 48 bodies have two crossings at every contact\n", compared);
   assert_true(compared >= 12);

@@ -22,9 +22,10 @@ static void matter(double *modulus, double *ratio) {
                                     fine ? "fidelity.time_step=1 us" : "fidelity.time_step=2 us",
                                     "loading.strain_end=0.2 %");
     for (uint64_t seed = 1; seed <= BODIES; seed++) {
-      RAN ran = run_case_run(&dem_engine, &in, seed);
+      struct ran ran = run_case_run(&dem_engine, &in, seed);
       mean[fine][0] += ran.results.dem.young_modulus / BODIES;
       mean[fine][1] += ran.results.dem.poisson_ratio / BODIES;
+      free(ran.fragments);
     }
     print_message("beams alone, %d columns: K %.4g Pa, nu %.3f\n", fine ? 50 : 25, mean[fine][0], mean[fine][1]);
   }

@@ -202,13 +202,14 @@ TEST(intervals_hold_the_exponent_of_real_runs) {
     draw_from(&population, 1);
     return;
   }
-  STORE store = NULL;
+  struct store *store;
   struct point_data point;
   if (store_open_reader(path, &store, &error) || point_read(store, 1, 0, &point, &error))
     fail_msg("%s", error.message);
   assert_true(point.runs.count > 0 && point.runs.count <= MOST_RUNS);
   draw_from(&point.runs, point.element_mass);
   point_release(&point);
+  store_close(store, NULL);
 }
 
 /* Fragments that are left out, or a window without end, make this worse with more runs: 2.07, 2.26, 2.35 from 20, 200

@@ -51,6 +51,35 @@ TEST(exact_answers_agree) {
     }
 }
 
+/* Matter of fewer pores than the curve begins with keeps them until it meets the curve, above P_e. */
+TEST(pores_begin_to_close_on_the_curve) {
+  struct sph_material m;
+  struct sph_palpha_law law;
+  struct sph_plane_shock got;
+  OK(sph_materials_load("pumice", &m, &error));
+  OK(sph_palpha_prepare(&m.palpha, &m, &law, &error));
+  assert_true(sph_palpha_crush_begin(&law) == m.palpha.elastic_pressure);
+  m.palpha.distention = 1 / 0.6; /* no sound speed is given, so that the elastic branch is alpha_0 */
+  OK(sph_palpha_prepare(&m.palpha, &m, &law, &error));
+  double begin = m.palpha.elastic_pressure, end = m.palpha.transition_pressure;
+  while (end - begin > 1e-9 * end) {
+    const double p = (begin + end) / 2,
+                 of_low = (m.palpha.transition_pressure - p) / (m.palpha.transition_pressure - 1e6),
+                 of_high = (m.palpha.solid_pressure - p) / (m.palpha.solid_pressure - 1e6);
+    const double alpha = 1 + (4.64 - 1.9) * pow(of_low, 12) + (1.9 - 1) * pow(of_high, 3);
+    *(alpha > m.palpha.distention ? &begin : &end) = p;
+  }
+  near(sph_palpha_crush_begin(&law), begin, 1e-8, "pressure at which pores begin to close");
+  OK(sph_plane_shock(&m, 10, &got, &error));
+  assert_true(got.has_precursor && got.has_shock);
+  near(got.precursor.pressure, begin, 1e-8, "pressure of the precursor");
+  near(got.precursor.distention, m.palpha.distention, 1e-12, "its distention");
+  const double mass = got.precursor.density *
+                      (got.shock.speed - got.precursor.velocity); /* momentum across the shock */
+  near(got.shock.pressure - begin, mass * (got.shock.velocity - got.precursor.velocity), 1e-6, "pressure of the shock");
+  assert_true(got.shock.speed < 400 && got.shock.distention < 1.64);
+}
+
 /* A piston slower than the matter behind the precursor crushes no pores; a very fast one leaves no precursor: then the
  * jump is from rest. */
 TEST(slow_and_fast_pistons) {

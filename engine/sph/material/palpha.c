@@ -22,6 +22,21 @@ double sph_palpha_crush(const struct sph_palpha_law *law, double p) {
   return alpha;
 }
 
+double sph_palpha_crush_begin(const struct sph_palpha_law *law) {
+  const double rest = law->given.distention, rounding = 1e-9;
+  double low = law->given.elastic_pressure, high = law->given.solid_pressure;
+  if (sph_palpha_elastic(law, rest, low) >= law->elastic_distention * (1 - rounding))
+    return low;
+  for (int k = 0; k < 100; k++) {
+    const double middle = (low + high) / 2;
+    if (sph_palpha_crush(law, middle) > sph_palpha_elastic(law, rest, middle))
+      low = middle;
+    else
+      high = middle;
+  }
+  return high;
+}
+
 double sph_palpha_crush_slope(const struct sph_palpha_law *law, double p) {
   const struct sph_palpha_material *g = &law->given;
   if (p <= g->elastic_pressure || p >= g->solid_pressure)

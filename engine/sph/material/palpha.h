@@ -41,6 +41,10 @@ status sph_palpha_prepare(const struct sph_palpha_material *given, const struct 
 double sph_palpha_crush(const struct sph_palpha_law *law, double pressure);
 double sph_palpha_crush_slope(const struct sph_palpha_law *law, double pressure);
 
+/* Pa: where the elastic branch of fresh matter meets the curve, so that pores begin to close. It is P_e, and higher for
+ * a body of lower alpha_0 than the curve begins with. */
+double sph_palpha_crush_begin(const struct sph_palpha_law *law);
+
 /* The elastic branch: dalpha/dP (<= 0); alpha at P of the branch with `rest` at P = 0; and which branch (alpha, P) is
  * on. One symmetric fourth-order step from 0 to P (Lobatto IIIA), so that the two are each other's inverse. */
 double sph_palpha_elastic_slope(const struct sph_palpha_law *law, double distention);
@@ -74,10 +78,10 @@ struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, doub
  * piston. They use this engine's equation of state and crush curve; tests compare them with a solution that shares
  * neither (tests/verification/palpha_exact.h).
  *
- * In porous matter there are two fronts: the elastic precursor, which raises the pressure to P_e, and behind it the
- * shock, which crushes pores. A piston slower than the matter behind the precursor makes only an elastic front. Where
- * the shock would be faster than the precursor, and in solid matter, there is only the shock. Across a front, ahead 1,
- * behind 2, in the frame of the matter ahead:
+ * In porous matter there are two fronts: the elastic precursor, which raises the pressure to P_e (to
+ * sph_palpha_crush_begin()), and behind it the shock, which crushes pores. A piston slower than the matter behind the
+ * precursor makes only an elastic front. Where the shock would be faster than the precursor, and in solid matter, there
+ * is only the shock. Across a front, ahead 1, behind 2, in the frame of the matter ahead:
  *
  *   rho1 U = rho2 (U - w)
  *   P2 - P1 = rho1 U w

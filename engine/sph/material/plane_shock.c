@@ -59,7 +59,7 @@ static struct sph_front front_of(const struct matter *m, const struct sph_front 
 /* The fronts ahead of the piston: a precursor, a shock behind it, or both. */
 static void find_fronts(const struct matter *m, const struct sph_front *rest, double piston,
                         struct sph_plane_shock *out) {
-  const double elastic = m->law ? m->law->given.elastic_pressure : 0;
+  const double elastic = m->law ? sph_palpha_crush_begin(m->law) : 0;
   if (elastic > 0) {
     out->precursor = front_to(m, rest, elastic);
     out->has_precursor = true;

@@ -141,7 +141,8 @@ static const struct field rows[] = {
     REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: speed of the precursor by the jump conditions."),
     REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
     REAL(precursor.pressure_exact, "Pa", 0,
-         .doc = "Piston: exact pressure behind the precursor: P_e, or less when the piston is slow."),
+         .doc = "Piston: exact pressure behind the precursor: that at which pores begin to close, or less when the "
+                "piston is slow."),
 #define SPH_MODULE_RESULT_ROWS
 #include "engine/sph/modules/declarations.h"
 };

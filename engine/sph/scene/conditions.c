@@ -609,8 +609,8 @@ static bool slopes(const struct sph_body_inputs *body, double both[2]) {
   struct sph_palpha_law law;
   if (!is_porous(body) || sph_palpha_prepare(&body->material.palpha, &body->material, &law, NULL))
     return false;
-  const double just_above = law.given.elastic_pressure * (1 + 1e-9) + 1e-9 * law.given.solid_pressure;
-  both[0] = fabs(sph_palpha_elastic_slope(&law, law.elastic_distention));
+  const double begin = sph_palpha_crush_begin(&law), just_above = begin * (1 + 1e-9) + 1e-9 * law.given.solid_pressure;
+  both[0] = fabs(sph_palpha_elastic_slope(&law, sph_palpha_elastic(&law, law.given.distention, begin)));
   both[1] = fabs(sph_palpha_crush_slope(&law, just_above));
   return true;
 }

@@ -223,6 +223,10 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
     fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g%s", sph_material_young_modulus(&target->material),
             sph_material_poisson_ratio(&target->material), porous ? " (of the solid between the pores)" : "");
   fputc('\n', out);
+  struct sph_palpha_law law;
+  if (porous && sph_palpha_prepare(&target->material.palpha, &target->material, &law, NULL) == STATUS_OK)
+    fprintf(out, "  pores close from %.4g Pa on, and all are closed at %.4g Pa\n", sph_palpha_crush_begin(&law),
+            law.given.solid_pressure);
   if (sph_derived_cracks(target)) {
     double E = sph_material_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
     double log_kv = log(target->material.weibull.k) +
