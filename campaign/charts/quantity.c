@@ -186,39 +186,55 @@ static bool suits(const struct axes_wanted *wanted, size_t place, const struct a
          (wanted->least < 2 && values->given == values->points && values->numbers == 0 && values->kinds <= MOST_PLACES);
 }
 
-/* Where the user named no input (all NULL): takes the first ones that were varied and that suit all points, and names
- * them on stderr. An input with one value comes after the others. */
+/* Is the column what the user named? */
+static bool is_named(const struct ask_column *column, const char *word) {
+  char name[sizeof column->name] = "";
+  for (size_t i = 0; word && word[i] && i + 1 < sizeof name; i++)
+    name[i] = word[i] == '.' ? '_' : word[i];
+  return *name && text_ends_in_words(column->name, name, "_");
+}
+
+/* Takes for each axis that the user did not name (NULL) the first input that was varied and that suits all points, and
+ * names them on stderr. An input with one value comes after the others. --by is taken only if nothing was named. */
 static status choose_axes(struct store *store, const struct axes_wanted *wanted, const char *inputs[AXES],
                           struct ask_column axes[LIMITS_AXES_OF_TABLE], struct error *error) {
   static const char *const option[] = {"--x", "--y"}, *const by = "--by";
   char chosen[600] = "";
-  size_t count = 0, taken = 0, last = 0;
+  size_t count = 0, named = 0, taken = 0, filled = 0, last = 0;
   const size_t least = wanted->least;
   bool used[LIMITS_AXES_OF_TABLE] = {false};
   if (inputs[0] && (least < 2 || inputs[1]))
     return STATUS_OK;
   TRY(ask_columns_axes(store, true, LIMITS_AXES_OF_TABLE, axes, &count, error));
-  if (inputs[0] || inputs[1] || inputs[2])
-    return status_fail(error, STATUS_USAGE,
-                       least < 2 ? "--by also needs --x, an input that the campaign varied"
-                                 : "a map needs both --x and --y, inputs that the campaign varied");
+  for (size_t k = 0; k < AXES; k++) {
+    named += inputs[k] != NULL;
+    for (size_t i = 0; i < count; i++)
+      used[i] |= is_named(&axes[i], inputs[k]);
+  }
   if (count < least)
     return status_fail(error, STATUS_USAGE,
                        count ? "only %s was varied: `clast plot` draws a quantity over one input"
                              : "no input was varied: `clast scatter` shows the runs, `clast spectrum` their fragments",
                        axes[0].word);
+  const size_t most = named ? least : wanted->most;
   for (int constant = 0; constant < 2; constant++)
-    for (size_t i = 0; i < count && taken < wanted->most; i++) {
+    for (size_t i = 0; i < count; i++) {
       struct ask_group_values values;
+      while (taken < most && inputs[taken])
+        taken++;
+      if (taken == most)
+        break;
       TRY(ask_group_values(store, axes[i].name, &values, error));
       if (used[i] || (values.kinds < 2) != constant || !suits(wanted, taken, &values))
         continue;
       used[i] = true;
       last = i > last ? i : last;
+      filled++;
       inputs[taken] = axes[i].word;
       text_append(chosen, sizeof chosen, " %s %s", taken < least ? option[taken] : by, axes[i].word);
-      taken++;
     }
+  for (taken = 0; taken < least && inputs[taken];)
+    taken++;
   if (taken < least) {
     *chosen = '\0';
     for (size_t i = 0; i < count; i++)
@@ -230,8 +246,8 @@ static status choose_axes(struct store *store, const struct axes_wanted *wanted,
                                    "points that have both are drawn: %s",
                        chosen);
   }
-  fprintf(stderr, "clast: drawn over the first inputs that were varied%s:%s\n",
-          last < taken ? "" : " and suit all points", chosen);
+  fprintf(stderr, "clast: drawn over the first %sinputs that were varied%s:%s\n", named ? "other " : "",
+          named || last < filled ? "" : " and suit all points", chosen);
   return STATUS_OK;
 }
 
@@ -609,6 +625,11 @@ static void tell_changing(const struct quantity *quantity, const char *drawn, ch
           sentence);
 }
 
+/* Why no value has an interval. */
+static const char *no_interval(const struct quantity *quantity) {
+  return quantity->exponent ? "too few runs or fragments" : "one run a point";
+}
+
 /* Takes the rows of a quantity as lines and draws them. */
 static status draw_lines(struct store *store, struct plot *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
@@ -646,10 +667,13 @@ static status draw_lines(struct store *store, struct plot *plot, const struct pi
     *title = (char)(*title - 'a' + 'A');
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "; thin bars add what is known of it", resolution, sizeof resolution);
-  snprintf(caption, sizeof caption, "Error bars: %s; %s", intervals, resolution);
-  size_t weak = 0;
-  for (size_t i = 0; i < quantity->count; i++)
+  size_t weak = 0, bars = 0;
+  for (size_t i = 0; i < quantity->count; i++) {
     weak += quantity->row[i].weak && isfinite(quantity->row[i].value);
+    bars += quantity->row[i].half_width > 0;
+  }
+  snprintf(caption, sizeof caption, "%s: %s; %s", bars ? "Error bars" : "No error bars",
+           bars ? intervals : no_interval(quantity), resolution);
   if (weak > 0)
     text_append(caption, sizeof caption, "; %zu of the marks: %s", weak,
                 quantity->exponent ? "no interval (clast explain weak)"
@@ -692,7 +716,7 @@ static double three_digits_up(double half_width) {
 }
 
 static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count,
-                         const struct picture_tile *tile, const struct panels *panels, double widest,
+                         const struct picture_tile *tile, const struct panels *panels, const struct row *widest,
                          const struct picture_page *page, struct error *error) {
   char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1100];
   char made[ASK_GROUP_POOLED + 60], intervals[600], resolution[400], scene[CHARTS_LABEL];
@@ -708,12 +732,16 @@ static status draw_tiles(struct store *store, const struct quantity *quantity, s
   title[0] = (char)toupper((unsigned char)title[0]);
   charts_intervals(&quantity->pooled, intervals, sizeof intervals);
   charts_resolution(store, quantity->name, "", resolution, sizeof resolution);
-  if (widest > 0)
-    snprintf(caption, sizeof caption, "The widest of the %s is \xc2\xb1 %.3g, `clast %s` has all; %s", intervals,
-             three_digits_up(widest), quantity->exponent ? "estimates" : "stats", resolution);
+  char width[64] = "";
+  if (widest && fabs(widest->upper + widest->lower - 2 * widest->value) > 1e-9 * (widest->upper - widest->lower))
+    snprintf(width, sizeof width, "from %.3g to %.3g", widest->lower, widest->upper); /* it ends where the range does */
+  else if (widest)
+    snprintf(width, sizeof width, "\xc2\xb1 %.3g", three_digits_up(widest->half_width));
+  if (widest)
+    snprintf(caption, sizeof caption, "The widest of the %s is %s, `clast %s` has all; %s", intervals, width,
+             quantity->exponent ? "estimates" : "stats", resolution);
   else
-    snprintf(caption, sizeof caption, "No interval: %s; %s",
-             quantity->exponent ? "too few runs or fragments" : "one run a point", resolution);
+    snprintf(caption, sizeof caption, "No interval: %s; %s", no_interval(quantity), resolution);
   size_t weak = 0;
   for (size_t i = 0; i < count; i++)
     weak += tile[i].weak;
@@ -764,7 +792,7 @@ static status find_panel(struct store *store, const struct quantity *quantity, c
 /* Makes a tile of each row that has two numbers, and draws them. */
 static status make_tiles(struct store *store, const struct quantity *quantity, struct picture_tile *tile,
                          const struct picture_page *page, struct error *error) {
-  double widest = 0; /* half width of the widest interval, in the quantity's unit; 0: there is none */
+  const struct row *widest = NULL; /* the row with the widest interval; NULL: there is none */
   size_t count = 0;
   struct panels panels = {0};
   const struct sample_range range = views_range(quantity->name);
@@ -784,8 +812,9 @@ static status make_tiles(struct store *store, const struct quantity *quantity, s
                                           .weak = row->weak && isfinite(row->value),
                                           .decimals = decimals_of(row, &range),
                                           .panel = panel};
-    if (isfinite(row->value) && row->half_width > 0) /* of a share within 0 and 1 the larger distance to an end */
-      widest = fmax(widest, fmax(row->upper - row->value, row->value - row->lower));
+    if (isfinite(row->value) && row->half_width > 0 &&
+        (!widest || row->upper - row->lower > widest->upper - widest->lower))
+      widest = row;
   }
   TRY(check_told(quantity, error));
   return draw_tiles(store, quantity, count, tile, &panels, widest, page, error);

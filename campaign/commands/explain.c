@@ -98,7 +98,8 @@ static void rests_on(const struct engine_kind *kind, const char *path, char word
     if (strcmp(last, c->word) == 0 || marks_all(kind->conditions, c->word) != !path ||
         (path && condition_mark(c, c->word, path) == CONDITION_SOUND))
       continue;
-    text_append(words, RESTS, c->withheld ? "%s(%s)" : "%s%s", before, c->word);
+    const bool withheld = path ? condition_mark(kind->conditions, c->word, path) == CONDITION_WITHHELD : c->withheld;
+    text_append(words, RESTS, withheld ? "%s(%s)" : "%s%s", before, c->word);
     last = c->word;
     before = ", ";
   }
@@ -497,22 +498,22 @@ static status run(const struct command_line *line, struct error *error) {
     return explain_path_list(line->format, error);
 
   char name[FIELD_TEXT_SIZE], words[WORDS], meaning[1024]; /* "equation of state" is a word with underscores */
-  const bool blanks = strchr(line->arguments[0], ' ') != NULL;
-  const bool heading = strncmp(line->arguments[0], "\xc2\xb1", 2) == 0; /* "±res" */
-  snprintf(name, sizeof name, "%s", line->arguments[0] + (heading ? 2 : 0));
-  for (char *at = name; blanks && (at = strchr(at, ' '));)
+  const char *given = line->arguments[0];
+  const bool heading = strncmp(given, "\xc2\xb1", 2) == 0; /* "±res" */
+  snprintf(name, sizeof name, "%s", given + (heading ? 2 : 0));
+  for (char *at = name; (at = strchr(at, ' '));)
     *at = '_';
   bool is_word = false;
   for (const char *text = glossary_text; !is_word && read_entry(&text, words, meaning);)
     is_word = text_has_word(words, name);
-  const bool is_scene = (!is_word && file_name_is_document(name)) || strchr(name, '@') || scene_builtin_text(name) ||
+  const bool is_scene = (!is_word && file_name_is_document(given)) || strchr(given, '@') || scene_builtin_text(given) ||
                         options->set.count;
   if (!is_scene) {
     TRY(table_text_only(line->format, "the explanation of a path", error));
     return explain_path(name, error);
   }
   SCENE scene = NULL;
-  TRY(option_load_scene(name, &options->set, &scene, error));
+  TRY(option_load_scene(given, &options->set, &scene, error));
   return explain_scene(scene, line->format, error);
 }
 

@@ -494,7 +494,8 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
     if (measured->bodies)
       fputs(
           "clast: this scene is two-dimensional: its masses are per metre of thickness, the measured ones in kg count "
-          "as of 1 m. Divide them by the thickness of the specimen, and name the column mass (kg/m)\n",
+          "as of 1 m. Divide them by the thickness of the specimen, and name the column mass (kg/m), "
+          "with `complete from` in kg/m, too\n",
           stderr);
     else if (given > SAME_MASS * body[0] || (given > 0 && body[1] > SAME_MASS * given && !partial)) {
       char other[48] = "";

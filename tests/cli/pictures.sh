@@ -265,8 +265,13 @@ expect 0 "$clast" plot small.db first.svg
 says "drawn over the first inputs that were varied: --x strain --by angle"
 expect 0 "$clast" map small.db first_map.svg
 says "varied: --x strain --y angle"
-expect 64 "$clast" plot small.db m.png --by angle
-says "--x"
+expect 0 "$clast" plot small.db m.svg --by angle
+says "first other inputs that were varied: --x strain"
+expect 0 "$clast" map small.db m.svg --y threshold.strain
+says "first other inputs that were varied: --x angle"
+# One run a point has no interval; one that ends with the range is told by its ends.
+expect 0 "$clast" plot small.db one.svg -x strain --by angle --where 'replicate < 1' --keep-script
+grep -q 'No error bars: one run a point' one.gp || fail "error bars of one run"
 # An axis that nobody named is an input of all points: of two scenes in one store, none of one scene alone. Lines and panels
 # have few values.
 two_scenes scenes.db
@@ -318,7 +323,6 @@ says "'largest_share' is unknown. Similar are: largest_fraction,"
 expect 64 "$clast" plot small.db m.jpg -x strain
 expect 74 "$clast" plot small.db no/such/folder/m.png -x strain
 
-expect 64 "$clast" map small.db m.png -x strain
 expect 64 "$clast" map small.db m.png -x strain -y strain
 expect 64 "$clast" map small.db m.png -x strain -y nothing
 says "threshold.angle"
@@ -464,4 +468,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 162
+done_after 163

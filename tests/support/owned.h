@@ -7,11 +7,11 @@
 /* A struct that `release` empties: OWNED_BY(csv_close) struct csv table; */
 #define OWNED_BY(release) __attribute__((cleanup(release)))
 
-/* release_at(): the same of a pointer, for OWNED_BY; also of a pointer to what stands behind a `void *`. */
+/* release_at(): the same of a pointer, for OWNED_BY. */
 #define OWNED_AT(release, type)                                                                                        \
   void release(type *);                                                                                                \
-  __attribute__((unused)) static void release##_at(void *at) {                                                         \
-    release(*(type **)at);                                                                                             \
+  __attribute__((unused)) static void release##_at(type **at) {                                                        \
+    release(*at);                                                                                                      \
   }
 struct dem_system;
 struct dem_tessellation;

@@ -41,14 +41,9 @@ struct ran {
     struct dem_results dem;
     struct sph_results sph;
   } results;
-  struct fragment *fragments; /* owned: RAN */
+  struct fragment *fragments; /* owned by the test */
   size_t count;
 };
-
-UNUSED static void ran_clear(struct ran *ran) {
-  free(ran->fragments);
-}
-#define RAN OWNED_BY(ran_clear) struct ran
 
 /* Runs to the end, `chunk` steps at a time; 0: chunks of 1 to 23 steps. */
 UNUSED static struct ran run_case_end(const struct engine_kind *kind, void *run, uint64_t chunk) {
