@@ -349,59 +349,6 @@ double mesh_reach(const struct mesh *m, const double direction[3]) {
   return reach;
 }
 
-/* ---- a line from the centre ---- */
-
-/* Two directions across d. */
-static void frame_of(const double d[3], double u[3], double v[3]) {
-  int least = 0;
-  for (int k = 1; k < 3; k++)
-    if (fabs(d[k]) < fabs(d[least]))
-      least = k;
-  for (int k = 0; k < 3; k++)
-    u[k] = (k == least) - d[least] * d[k];
-  const double length = sqrt(vector3_dot(u, u));
-  for (int k = 0; k < 3; k++)
-    u[k] /= length;
-  vector3_cross(d, u, v);
-}
-
-/* Does the line through the origin along u x v meet the face from inside? As in search.c, both faces of an edge do the
- * same sum for it. */
-static bool leaves_by(const struct mesh *m, const uint32_t corner[3], const double u[3], const double v[3]) {
-  int turned = 0;
-  for (int c = 0; c < 3; c++) {
-    const uint32_t a = corner[c], b = corner[(c + 1) % 3];
-    const double *low = m->vertex[a < b ? a : b], *high = m->vertex[a < b ? b : a];
-    const double y[2] = {vector3_dot(low, v), vector3_dot(high, v)}, x[2] = {vector3_dot(low, u), vector3_dot(high, u)};
-    if ((y[0] > 0) == (y[1] > 0))
-      continue;
-    if (x[0] - y[0] * ((x[1] - x[0]) / (y[1] - y[0])) > 0)
-      turned += (y[1] > 0) == (a < b) ? 1 : -1;
-  }
-  return turned > 0;
-}
-
-bool mesh_surface(const struct mesh *m, const double direction[3], double point[3], double normal[3]) {
-  double u[3], v[3], last = 0;
-  bool found = false;
-  frame_of(direction, u, v);
-  for (uint32_t f = 0; f < m->faces; f++) {
-    if (!leaves_by(m, m->face[f], u, v))
-      continue;
-    double n[3];
-    mesh_normal(m, f, n);
-    const double slope = vector3_dot(n, direction), along = vector3_dot(n, m->vertex[m->face[f][0]]) / slope;
-    if (!(slope > 0) || !(along > last))
-      continue;
-    last = along;
-    found = true;
-    memcpy(normal, n, sizeof n);
-  }
-  for (int k = 0; k < 3; k++)
-    point[k] = last * direction[k];
-  return found;
-}
-
 /* ---- shape files that were read ---- */
 
 struct entry {

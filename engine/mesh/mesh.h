@@ -44,9 +44,9 @@ bool mesh_inside(const struct mesh *mesh, const double point[3]);
 double mesh_distance(const struct mesh *mesh, const double point[3], double normal[3]);
 /* The largest coordinate along a direction. */
 double mesh_reach(const struct mesh *mesh, const double direction[3]);
-/* The last place where the line from the centre along the unit direction leaves the solid, and the normal of the face
- * there. False: it does not meet the solid (a ring). */
-bool mesh_surface(const struct mesh *mesh, const double direction[3], double point[3], double normal[3]);
+/* The last place where the line from the centre upwards (z) leaves the solid, and the normal of the face there. False:
+ * it does not meet the solid (a ring). */
+bool mesh_top(const struct mesh *mesh, double point[3], double normal[3]);
 
 /* Shape files that scenes use, by their content. A scene keeps the SHA-256 of the file (an input with FIELD_FILE);
  * this list keeps the bytes and the mesh of each until the process ends. So a run depends on what a file holds, not on

@@ -1,6 +1,7 @@
-/* Where a point is: inside a mesh or outside, and how far from it. */
+/* Where a point is: inside a mesh or outside, and how far from it; where the line upwards leaves it. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/mesh/build.h"
 #include "engine/vector3.h"
@@ -128,6 +129,24 @@ bool mesh_inside(const struct mesh *m, const double p[3]) {
       around += turned;
   }
   return around > 0;
+}
+
+bool mesh_top(const struct mesh *m, double point[3], double normal[3]) {
+  const double centre[2] = {0, 0};
+  double last = 0;
+  for (uint32_t f = 0; f < m->faces; f++) {
+    double n[3];
+    if (turn(m, m->face[f], centre) <= 0)
+      continue;
+    mesh_normal(m, f, n);
+    const double z = vector3_dot(n, m->vertex[m->face[f][0]]) / n[2];
+    if (!(n[2] > 0) || !(z > last))
+      continue;
+    last = z;
+    memcpy(normal, n, sizeof n);
+  }
+  memcpy(point, (const double[]){0, 0, last}, sizeof(double[3]));
+  return last > 0;
 }
 
 /* ---- a surface that cuts itself ---- */

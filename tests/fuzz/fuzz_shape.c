@@ -27,7 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     largest = fmax(largest, mesh->high[k] - mesh->low[k]);
   }
   must(mesh_reach(mesh, up) >= 0);
-  (void)mesh_surface(mesh, up, point, normal);
+  (void)mesh_top(mesh, point, normal);
   for (int i = 0; i < 27; i++) {
     const int step[3] = {i % 3, i / 3 % 3, i / 9};
     for (int k = 0; k < 3; k++)

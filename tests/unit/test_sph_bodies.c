@@ -107,42 +107,41 @@ TEST(the_same_bits_each_time) {
   }
 }
 
-/* The gap of the surfaces is the requested one, the angle is that between flight direction and inward normal, and the
- * projectile hits. */
+/* The projectile touches the target above its centre, and the angle is that between flight direction and inward normal.
+ */
 TEST(projectiles_are_aimed) {
   const struct sph_shape targets[] = {
       {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 0.03},
       {.kind = SPH_SHAPE_BOX, .centre = {1, 2, 3}, .side = {0.2, 0.2, 0.2}},
       {.kind = SPH_SHAPE_CYLINDER, .centre = {1, 2, 3}, .radius = 0.1, .length = 0.4, .axis = {0, 0, 1}},
+      {.kind = SPH_SHAPE_CYLINDER, .centre = {1, 2, 3}, .radius = 0.1, .length = 0.4, .axis = {0, 0.6, 0.8}},
   };
-  const double directions[][3] = {{0, 0, 1}, {0, 0, -4}, {-1, 0, 0}, {0.9, 0.1, -0.2}};
-  const double angles[] = {0, 0.5235987755982988, 1.2}, gaps[] = {0, 1e-4};
-  for (int t = 0; t < 3; t++)
-    for (int d = 0; d < 4; d++)
-      for (int a = 0; a < 3; a++)
-        for (int g = 0; g < 2; g++) {
-          struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
-          double flight[3], point[3], normal[3];
-          assert_int_equal(sph_bodies_aim(&targets[t], &shot, directions[d], angles[a], gaps[g], flight, NULL),
-                           STATUS_OK);
-          sph_shape_surface(&targets[t], directions[d], point, normal);
-          assert_true(fabs(sph_shape_gap(&targets[t], &shot) - gaps[g]) < 1e-12);
-          double along = 0, length = 0;
-          for (int k = 0; k < 3; k++) {
-            along -= flight[k] * normal[k];
-            length += flight[k] * flight[k];
-          }
-          assert_true(fabs(length - 1) < 1e-12 && fabs(acos(fmin(1, along)) - angles[a]) < 1e-7);
-          /* turned aside, never straight on, and towards +x or +y */
-          if (a)
-            assert_true(fabs(normal[0]) > cos(0.1) ? flight[1] > 0 : flight[0] > -along * normal[0]);
-          if (g && a < 2)
-            assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight, NULL) <= 0);
-          for (int k = 0; k < 3; k++)
-            flight[k] = -flight[k];
-          if (g)
-            assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
-        }
+  const double angles[] = {0, 0.5235987755982988, 1.2};
+  for (int t = 0; t < 4; t++)
+    for (int a = 0; a < 3; a++) {
+      struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
+      double flight[3], point[3], normal[3];
+      OK(sph_bodies_aim(&targets[t], &shot, angles[a], flight, &error));
+      assert_true(sph_shape_top(&targets[t], point, normal));
+      assert_true(fabs(sph_shape_distance(&targets[t], point, NULL)) < 1e-12 && normal[2] > 0);
+      assert_true(point[0] == 1 && point[1] == 2 && point[2] > 3);
+      assert_true(fabs(sph_shape_gap(&targets[t], &shot)) < 1e-12);
+      double along = 0, length = 0;
+      for (int k = 0; k < 3; k++) {
+        along -= flight[k] * normal[k];
+        length += flight[k] * flight[k];
+      }
+      assert_true(fabs(length - 1) < 1e-12 && fabs(acos(fmin(1, along)) - angles[a]) < 1e-7);
+      if (a) /* turned aside, towards +x */
+        assert_true(flight[0] > -along * normal[0]);
+      for (int k = 0; k < 3; k++)
+        shot.centre[k] -= 1e-4 * flight[k];
+      if (a < 2)
+        assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight) <= 0);
+      for (int k = 0; k < 3; k++)
+        flight[k] = -flight[k];
+      assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight) > 0); /* flies off: misses */
+    }
 }
 
 TEST(overlaps_are_refused) {

@@ -150,35 +150,17 @@ TEST(gaps_and_overlaps) {
 
 TEST(flights_hit_or_miss) {
   struct sph_shape target = at(&sphere, 0, 0, 0), shot = at(&sphere, 10, 0, 0);
-  double when;
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, &when) <= 0);
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){2, 0, 0}, &when) == 6); /* flies off: nearest now */
-  assert_true(when < 1e-6);
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){0, 0, 0}, &when) == 6);
-  shot.centre[1] = 5; /* passes 5 from the centre at x = 0, when 10 m are flown at 2 m/s */
-  assert_true(fabs(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, &when) - 1) < 1e-9);
-  assert_true(fabs(when - 5) < 1e-3);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}) <= 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){2, 0, 0}) == 6); /* flies off: nearest now */
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){0, 0, 0}) == 6);
+  shot.centre[1] = 5; /* passes 5 from the centre at x = 0 */
+  assert_true(fabs(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}) - 1) < 1e-9);
   shot.centre[1] = 3.999;
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, NULL) <= 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}) <= 0);
   shot.centre[1] = 4.001;
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, NULL) > 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}) > 0);
   target = at(&box, 0, 0, 0);
   shot = at(&rod, 0, 0, 9);
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){0, 0, -1}, NULL) <= 0);
-  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){1, 0, -0.2}, NULL) > 0);
-}
-
-TEST(rays_leave_by_the_surface) {
-  for (int s = 0; s < 4; s++)
-    for (uint64_t i = 0; i < 200; i++) {
-      double u[3], d[3], p[3], normal[3];
-      uniforms(i, u);
-      for (int k = 0; k < 3; k++)
-        d[k] = u[k] - 0.5;
-      struct sph_shape hull = *shapes[s];
-      hull.inner_radius = 0;
-      sph_shape_surface(&hull, d, p, normal);
-      assert_true(fabs(sph_shape_distance(&hull, p, NULL)) < 1e-12);
-      assert_true(normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2] > 0);
-    }
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){0, 0, -1}) <= 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){1, 0, -0.2}) > 0);
 }

@@ -45,12 +45,13 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
   assert_int_equal(sph_report_fragments(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces,
                                         &error),
                    STATUS_OK);
+  const double top[3] = {0, 0, radius};
   double near = 0, core = 0, middle[3] = {0, 0, 0};
   for (size_t i = 0; i < run->targets; i++) {
     const double at[3] = {run->start->x[i], run->start->y[i], run->start->z[i]};
     double square = 0;
     for (int d = 0; d < 3; d++)
-      square += (at[d] - radius * run->impact_direction[d]) * (at[d] - radius * run->impact_direction[d]);
+      square += (at[d] - top[d]) * (at[d] - top[d]);
     if (square < radius * radius / 4) {
       near += 1;
       s.near_damage += pow(run->now->damage_cbrt[i], 3);

@@ -154,8 +154,8 @@ static void impact(bool correction, int precision) {
   c.parameters.in.gradient_correction.on = correction;
   c.parameters.in.fidelity.precision = precision;
   double flight[3];
-  const double direction[3] = {0, 0.2, 1};
-  OK(sph_bodies_aim(&c.body[0].shape, &c.body[1].shape, direction, 0.5, 0.1 * radius, flight, &error));
+  OK(sph_bodies_aim(&c.body[0].shape, &c.body[1].shape, 0.5, flight, &error));
+  c.body[1].shape.centre[2] += 0.1 * radius;
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   const struct sph_flaw_law law = {.weibull = solid_basalt().weibull, .draw = SPH_FLAWS_RANKED, .seed = 3};
   OK(sph_flaws_place(&law, &c.body[0].shape, c.particles, c.range[0], INFINITY, &flaws, &error));

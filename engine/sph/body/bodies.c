@@ -8,13 +8,6 @@
 #include "engine/vector3.h"
 #include "schemas/memory.h"
 
-static double unit(const double a[3], double out[3]) {
-  const double length = sqrt(vector3_dot(a, a));
-  for (int k = 0; k < 3; k++)
-    out[k] = length > 0 ? a[k] / length : 0;
-  return length;
-}
-
 /* Bodies may touch; rounding is allowed for. */
 static status check_overlap(const struct sph_shape *a, const struct sph_shape *b, struct error *error) {
   const double gap = sph_shape_gap(a, b), size = cbrt(fmin(sph_shape_volume(a), sph_shape_volume(b)));
@@ -69,28 +62,29 @@ status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, 
   return code;
 }
 
-bool sph_bodies_face(const struct sph_shape *target, const double direction[3], double point[3], double frame[3][3]) {
+bool sph_bodies_face(const struct sph_shape *target, double point[3], double frame[3][3]) {
   double *aside = frame[0], *normal = frame[2];
-  if (!sph_shape_surface(target, direction, point, normal))
+  if (!sph_shape_top(target, point, normal))
     return false;
   const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
   for (int k = 0; k < 3; k++)
     aside[k] = (k == towards) - normal[towards] * normal[k];
-  unit(aside, aside);
+  const double length = sqrt(vector3_dot(aside, aside));
+  for (int k = 0; k < 3; k++)
+    aside[k] /= length;
   vector3_cross(normal, aside, frame[1]);
   return true;
 }
 
-status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
-                      double angle, double gap, double flight[3], struct error *error) {
-  double outwards[3], point[3], frame[3][3];
-  unit(direction, outwards);
-  if (!sph_bodies_face(target, outwards, point, frame))
+status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, double angle, double flight[3],
+                      struct error *error) {
+  double point[3], frame[3][3];
+  if (!sph_bodies_face(target, point, frame))
     return status_fail(error, STATUS_CONTENT,
                        "no point of impact: the line from the target's centre of mass upwards (z) does not meet the "
                        "target. Turn the mesh in its file.");
   const double *aside = frame[0], *normal = frame[2];
-  const double away = gap + sph_shape_reach(projectile, (const double[3]){-normal[0], -normal[1], -normal[2]});
+  const double away = sph_shape_reach(projectile, (const double[3]){-normal[0], -normal[1], -normal[2]});
   for (int k = 0; k < 3; k++) {
     projectile->centre[k] = point[k] + away * normal[k];
     flight[k] = -cos(angle) * normal[k] + sin(angle) * aside[k];

@@ -3,7 +3,7 @@
  *
  *   struct sph_body body[2] = {{.shape = ..., .lattice = ..., .density = 2700, .h_over_spacing = NAN}, {...}};
  *   double flight[3];
- *   sph_bodies_aim(&body[0].shape, &body[1].shape, direction, angle, gap, flight)   places the projectile
+ *   sph_bodies_aim(&body[0].shape, &body[1].shape, angle, flight)   places the projectile
  *   sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &particles, range, &error)   also checks for overlaps
  *   sph_bodies_move(particles, range[1], velocity)
  *   sph_flaws_place(&law, &body[0].shape, particles, range[0], INFINITY, &flaws, &error)   (flaws.h) */
@@ -49,9 +49,9 @@ int sph_shape_walls(const struct sph_shape *shape, const double point[3], double
                     double normal[SPH_SHAPE_WALLS][3]);
 /* The extent of the shape from its centre along a unit direction, m; of a ring that of its hull. */
 double sph_shape_reach(const struct sph_shape *shape, const double direction[3]);
-/* The point where the ray from the centre along `direction` leaves the hull (of a mesh: the mesh, for the last time),
- * and the outward normal there. False: a mesh that the ray does not meet. */
-bool sph_shape_surface(const struct sph_shape *shape, const double direction[3], double point[3], double normal[3]);
+/* The point where the line from the centre upwards (z) leaves the hull (of a mesh: the mesh, for the last time), and
+ * the outward normal there. False: a mesh that the line does not meet. */
+bool sph_shape_top(const struct sph_shape *shape, double point[3], double normal[3]);
 /* Turns three uniforms of [0, 1) into a point that is uniform in the shape. For a mesh the point is uniform in the box
  * around it. False: the point is outside of the mesh; draw again. */
 bool sph_shape_place(const struct sph_shape *shape, const double uniform[3], double point[3]);
@@ -61,10 +61,8 @@ double sph_shape_mesh_area(const struct sph_shape *shape); /* m^2, of a mesh */
  * the deepest place found, and a gap may be too large where both are concave; of boxes and cylinders it is just below
  * 0. */
 double sph_shape_gap(const struct sph_shape *a, const struct sph_shape *b);
-/* The smallest gap (m) from now on while b moves past a with the relative velocity of b (m/s), and its time (s) in
- * *when (NULL is fine). */
-double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3],
-                           double *when);
+/* The smallest gap (m) from now on while b moves past a with the relative velocity of b (m/s). */
+double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3]);
 /* A right-handed frame, in columns, whose third axis is the cylinder's; the identity for other shapes. */
 void sph_shape_frame(const struct sph_shape *shape, double frame[3][3]);
 
@@ -176,16 +174,15 @@ struct sph_range { /* a body's particles: ids first .. first + n - 1 */
 status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, struct sph_particles **out,
                        struct sph_range *ranges, struct error *error);
 
-/* Where the ray from the target's centre along `direction` leaves it: the point, and unit vectors there. frame[2] is
- * the outward normal, frame[0] lies in the face, towards +x (towards +y if the normal is within 0.1 rad of the x axis).
- * Of a face whose normal is z they are x, y and z. False: a mesh that the ray does not meet. */
-bool sph_bodies_face(const struct sph_shape *target, const double direction[3], double point[3], double frame[3][3]);
+/* The point of impact (sph_shape_top of the target), and unit vectors there. frame[2] is the outward normal, frame[0]
+ * lies in the face, towards +x (towards +y if the normal is within 0.1 rad of the x axis). Of a face whose normal is z
+ * they are x, y and z. False: a mesh that the line upwards does not meet. */
+bool sph_bodies_face(const struct sph_shape *target, double point[3], double frame[3][3]);
 
-/* Puts the projectile in front of the target. The point of impact is that of sph_bodies_face; the
- * projectile's surface is `gap` (m) away from it. `flight` becomes the unit vector of its motion: `angle` (rad) from
- * the inward normal, turned towards frame[0], below pi/2. STATUS_CONTENT: no point of impact. */
-status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
-                      double angle, double gap, double flight[3], struct error *error);
+/* Puts the projectile at the target, in contact at the point of impact. `flight` becomes the unit vector of its motion:
+ * `angle` (rad) from the inward normal, turned towards frame[0], below pi/2. STATUS_CONTENT: no point of impact. */
+status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, double angle, double flight[3],
+                      struct error *error);
 
 /* Velocity fields. Each is added to the present velocities. */
 void sph_bodies_move(struct sph_particles *particles, struct sph_range range, const double velocity[3]);

@@ -31,10 +31,9 @@ static void from_file(const struct sph_shape *s, const double place[3], double o
     out[k] = s->centre[k] + s->unit * place[k];
 }
 
-static bool mesh_shape_surface(const struct sph_shape *s, const double direction[3], double point[3],
-                               double normal[3]) {
+static bool mesh_shape_top(const struct sph_shape *s, double point[3], double normal[3]) {
   double p[3] = {0, 0, 0};
-  const bool found = s->mesh && mesh_surface(s->mesh, direction, p, normal);
+  const bool found = s->mesh && mesh_top(s->mesh, p, normal);
   from_file(s, p, point);
   return found;
 }
@@ -115,7 +114,7 @@ static double mesh_shape_gap(const struct sph_shape *s, const struct sph_shape *
   /* One may be wholly inside the other. The other's surface above its centre is a point of it. */
   double point[3], normal[3];
   const double up[3] = {0, 0, 1};
-  if (gap > 0 && sph_shape_surface(other, up, point, normal))
+  if (gap > 0 && sph_shape_top(other, point, normal))
     gap = fmin(gap, fmax(-sph_shape_reach(other, up), sph_shape_distance(s, point, NULL)));
   return gap;
 }
@@ -321,26 +320,9 @@ double sph_shape_reach(const struct sph_shape *s, const double d[3]) {
   }
 }
 
-/* How far the ray from the centre along the unit vector d stays in the shape, m, and the outward normal there. */
-static double box_ray(const struct sph_shape *s, const double d[3], double normal[3]) {
-  double nearest = INFINITY;
-  int face = 0;
-  for (int k = 0; k < 3; k++) {
-    if (d[k] == 0)
-      continue;
-    const double to_face = 0.5 * s->side[k] / fabs(d[k]);
-    if (to_face < nearest) {
-      nearest = to_face;
-      face = k;
-    }
-  }
-  for (int k = 0; k < 3; k++)
-    normal[k] = k == face ? copysign(1, d[k]) : 0;
-  return nearest;
-}
-
-static double cylinder_ray(const struct sph_shape *s, const double d[3], double normal[3]) {
-  const struct cylinder_place at = place_in_cylinder(s, d);
+/* How far the line from the centre upwards stays in the cylinder, m, and the outward normal there. */
+static double cylinder_top(const struct sph_shape *s, double normal[3]) {
+  const struct cylinder_place at = place_in_cylinder(s, (const double[]){0, 0, 1});
   const double to_side = at.r > 0 ? s->radius / at.r : HUGE_VAL;
   const double to_end = at.along != 0 ? 0.5 * s->length / fabs(at.along) : HUGE_VAL;
   for (int k = 0; k < 3; k++)
@@ -348,17 +330,16 @@ static double cylinder_ray(const struct sph_shape *s, const double d[3], double 
   return fmin(to_side, to_end);
 }
 
-bool sph_shape_surface(const struct sph_shape *s, const double direction[3], double point[3], double normal[3]) {
-  double d[3] = {0, 0, 1}, ray;
-  vector3_unit(direction, d);
+bool sph_shape_top(const struct sph_shape *s, double point[3], double normal[3]) {
+  if (s->kind == SPH_SHAPE_MESH)
+    return mesh_shape_top(s, point, normal);
+  memcpy(point, s->centre, sizeof s->centre);
+  memcpy(normal, (const double[]){0, 0, 1}, sizeof(double[3]));
   switch (s->kind) {
-  case SPH_SHAPE_MESH: return mesh_shape_surface(s, d, point, normal);
-  case SPH_SHAPE_BOX: ray = box_ray(s, d, normal); break;
-  case SPH_SHAPE_CYLINDER: ray = cylinder_ray(s, d, normal); break;
-  default: ray = s->radius; memcpy(normal, d, sizeof d);
+  case SPH_SHAPE_BOX: point[2] += 0.5 * s->side[2]; break;
+  case SPH_SHAPE_CYLINDER: point[2] += cylinder_top(s, normal); break;
+  default: point[2] += s->radius;
   }
-  for (int k = 0; k < 3; k++)
-    point[k] = s->centre[k] + ray * d[k];
   return true;
 }
 
@@ -441,14 +422,9 @@ double sph_shape_gap(const struct sph_shape *ring_a, const struct sph_shape *rin
   return convex_gap(&a, &b);
 }
 
-double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3],
-                           double *when) {
-  double direction[3], d[3], least = sph_shape_gap(a, b), unused;
-  if (!when)
-    when = &unused;
-  *when = 0;
-  const double speed = vector3_unit(velocity, direction);
-  if (!(speed > 0) || least <= 0)
+double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3]) {
+  double direction[3], d[3], least = sph_shape_gap(a, b);
+  if (!(vector3_unit(velocity, direction) > 0) || least <= 0)
     return least;
 
   /* Between convex bodies the gap is a convex function of the way: golden section. */
@@ -469,7 +445,6 @@ double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b,
     else
       low = ways[0];
     least = fmin(least, fmin(gaps[0], gaps[1]));
-    *when = 0.5 * (low + high) / speed;
   }
   return least;
 }

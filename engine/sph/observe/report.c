@@ -100,15 +100,14 @@ static void report_second(const struct sph_run *run, const struct sph_fragments 
   if (run->inputs.kind != SPH_IMPACT || !is_measured(found, 1))
     return;
 
-  double centre[3] = {0, 0, 0}, away[3], cosine = 0;
+  double centre[3] = {0, 0, 0}, away[3];
   for (size_t k = 0; k < found->count; k++)
     for (int d = 0; d < 3; d++)
       centre[d] += found->fragments[k].mass * found->fragments[k].position[d] / found->mass;
   for (int d = 0; d < 3; d++)
     away[d] = f->position[d] - centre[d];
-  for (int d = 0; d < 3; d++)
-    cosine += away[d] * run->impact_direction[d] / norm(away);
-  if (cosine > 1) /* not fmin(), which turns NaN into 1 */
+  double cosine = away[2] / norm(away); /* with the line from the target's centre to the point of impact */
+  if (cosine > 1)                       /* not fmin(), which turns NaN into 1 */
     cosine = 1;
   if (cosine < -1)
     cosine = -1;
@@ -184,7 +183,7 @@ struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
                                        .graded = in->fidelity.graded,
                                        .ejection_speed = in->crater.ejection_speed,
                                        .escape_speed = in->crater.escape_speed};
-  sph_bodies_face(&run->shape[0], run->impact_direction, point, options.frame);
+  sph_bodies_face(&run->shape[0], point, options.frame);
   for (int k = 0; k < 2; k++)
     options.axis[k] = vector3_dot(point, options.frame[k]);
   return options;

@@ -49,7 +49,6 @@ struct sph_run {
   int body_count;
   size_t targets;                          /* particles that can belong to fragments: ids below this one */
   double periodic[3];                      /* m, NaN = open */
-  double impact_direction[3];              /* from the target's centre to the point of impact; unit */
   struct sph_particles *start;             /* as they were set up: positions and h at rest */
   struct sph_particles *now;               /* the system as last read; sph_run_read */
   struct sph_flaws *flaws[SPH_RUN_BODIES]; /* NULL: the body does not crack; freed once the system has them */

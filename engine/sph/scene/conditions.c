@@ -382,7 +382,7 @@ static double tilt(const void *inputs) {
   const struct sph_inputs *in = inputs;
   const struct sph_shape target = sph_derived_target(in);
   double point[3], frame[3][3];
-  if (!(in->target.spin != 0) || !sph_bodies_face(&target, (const double[]){0, 0, 1}, point, frame))
+  if (!(in->target.spin != 0) || !sph_bodies_face(&target, point, frame))
     return NAN;
   if (frame[2][0] == 0 && frame[2][1] == 0)
     return NAN;
@@ -482,13 +482,8 @@ static double wide(const struct condition_run *r) {
   const struct sph_results *results = r->results;
   if (run->inputs.sides.far != SPH_FAR_DAMPED || !(results->crater.depth > 0))
     return NAN;
-  double deep = 0, across = INFINITY; /* sides of the box along the impact, and the shorter one of the others */
-  for (int k = 0; k < 3; k++)
-    if (fabs(run->impact_direction[k]) > 0.9)
-      deep = run->shape[0].side[k];
-    else
-      across = fmin(across, run->shape[0].side[k]);
-  return fmax(results->crater.depth / deep, 2 * results->crater.radius / across);
+  const double *side = run->shape[0].side;
+  return fmax(results->crater.depth / side[2], 2 * results->crater.radius / fmin(side[0], side[1]));
 }
 
 /* Mean damage of a target without damped sides. */

@@ -157,15 +157,15 @@ static double back_off(const struct sph_shape shape[2], const double flight[3]) 
 }
 
 status sph_derived_aim(const struct sph_inputs *in, struct sph_shape shape[2], double flight[3], struct error *error) {
-  const double up[3] = {0, 0, 1}, angle = in->impact.angle;
+  const double angle = in->impact.angle;
   shape[0] = sph_derived_target(in);
   shape[1] = sph_derived_projectile(in);
   memcpy(shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof shape[1].axis);
-  status code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight,
+  status code = sph_bodies_aim(&shape[0], &shape[1], angle, flight,
                                error);            /* in contact; the gap follows, back along the flight */
   if (!code && shape[0].kind == SPH_SHAPE_MESH) { /* its normal is known now, and with it the flight */
     memcpy(shape[1].axis, flight, sizeof shape[1].axis);
-    code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight, error);
+    code = sph_bodies_aim(&shape[0], &shape[1], angle, flight, error);
   }
   if (code)
     return code;
@@ -194,7 +194,7 @@ double sph_derived_fine_spacing(const struct sph_inputs *in) {
 struct sph_grading sph_derived_grading(const struct sph_inputs *in, const struct sph_shape *target) {
   struct sph_grading grading = {.fine = in->fidelity.fine_spacing, .radius = in->fidelity.fine_radius, .growth = NAN};
   double normal[3];
-  sph_shape_surface(target, (const double[]){0, 0, 1}, grading.point, normal);
+  sph_shape_top(target, grading.point, normal);
   return grading;
 }
 

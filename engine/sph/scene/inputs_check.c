@@ -228,7 +228,7 @@ static status check_flight(const struct sph_inputs *in, struct error *error) {
   TRY(check_arrival(in, "the projectile needs", "impact.gap", in->impact.gap, error));
   TRY(sph_derived_aim(in, shape, flight, error));
   const bool meshes = shape[0].kind == SPH_SHAPE_MESH || shape[1].kind == SPH_SHAPE_MESH; /* aimed at a face */
-  if (!meshes && sph_shape_gap_ahead(&shape[0], &shape[1], flight, NULL) > 0)
+  if (!meshes && sph_shape_gap_ahead(&shape[0], &shape[1], flight) > 0)
     REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)",
            in->impact.angle, in->impact.gap);
   return STATUS_OK;

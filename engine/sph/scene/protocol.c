@@ -208,7 +208,6 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   double flight[3] = {0, 0, 0};
   status code = STATUS_OK;
   run->body_count = sph_derived_bodies(in);
-  run->impact_direction[Z] = 1;
   for (int k = 0; k < 3; k++)
     run->periodic[k] = NAN;
   if (in->kind == SPH_IMPACT)
