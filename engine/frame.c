@@ -22,7 +22,7 @@ void frame_end_not_finite(struct frame *f, const char *quantity) {
   double speed;
   const size_t member = f->kind->fastest(f, &speed);
   frame_end(f->state, f->kind->fault, OUTCOME_NOT_FINITE,
-            "%s is no longer finite at %.6g s; %s %zu is the fastest, at %.3g m/s: %s", quantity, f->kind->time(f),
+            "%s is no longer finite at %.6g s; %s %zu is the fastest, at %.3g m/s: %s", quantity, *f->time,
             f->kind->member, member, speed, f->kind->remedy(f, NAN));
 }
 
@@ -41,7 +41,7 @@ static void look_at_energy(struct frame *f) {
       f->state, f->kind->fault, OUTCOME_ENERGY,
       "at %.6g s the sum of all energies has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g; "
       "%s %zu is the fastest, at %.3g m/s: %s",
-      f->kind->time(f), drift / now.input, now.bound, f->kind->member, member, speed, f->kind->remedy(f, drift));
+      *f->time, drift / now.input, now.bound, f->kind->member, member, speed, f->kind->remedy(f, drift));
 }
 
 void frame_look(struct frame *f) {
@@ -55,7 +55,7 @@ status frame_advance(struct frame *f, uint64_t max_steps) {
     if (!f->kind->step(f))
       return f->state->finished ? STATUS_OK : STATUS_MEMORY;
     f->kind->stop(f);
-    if (f->kind->steps(f) % f->kind->looks == 0 || f->state->finished)
+    if (*f->steps % f->kind->looks == 0 || f->state->finished)
       frame_look(f);
   }
   return STATUS_OK;
@@ -65,11 +65,11 @@ status frame_step(void *run, uint64_t max_steps, bool *finished, struct error *e
   struct frame *f = run;
   const status code = frame_advance(f, max_steps);
   *finished = f->state->finished;
-  return code ? status_fail(error, code, "%s", f->kind->failure(f)) : STATUS_OK;
+  return code ? status_fail(error, code, "%s", f->failure) : STATUS_OK;
 }
 
 double frame_time(const void *run) {
-  return ((const struct frame *)run)->kind->time(run);
+  return *((const struct frame *)run)->time;
 }
 
 double frame_progress(const void *run) {
@@ -80,8 +80,8 @@ double frame_progress(const void *run) {
 struct outcome frame_outcome(const struct frame *f, double time_step) {
   const struct frame_state *state = f->state;
   struct outcome outcome = {.state = state->finished ? state->outcome_state : OUTCOME_END_TIME,
-                            .steps = (int64_t)f->kind->steps(f),
-                            .time = f->kind->time(f),
+                            .steps = (int64_t)*f->steps,
+                            .time = *f->time,
                             .time_step = time_step};
   snprintf(outcome.message, sizeof outcome.message, "%s",
            state->finished ? state->message : "not finished: results of a snapshot");

@@ -30,14 +30,11 @@ struct frame_kind {
   /* One step, and what the protocol records of it. False: there is no step. Then the run has ended by a fault, or
    * memory is out. */
   bool (*step)(void *run);
-  void (*stop)(void *run);         /* the rules of the end, after every step */
-  void (*look)(void *run);         /* what else to check when the energy is looked at; NULL: nothing */
-  double (*time)(const void *run); /* s simulated */
-  uint64_t (*steps)(const void *run);
+  void (*stop)(void *run); /* the rules of the end, after every step */
+  void (*look)(void *run); /* what else to check when the energy is looked at; NULL: nothing */
   struct frame_energy (*energy)(void *run);
   size_t (*fastest)(void *run, double *speed);    /* the fastest member, or the first that is not finite; m/s */
   const char *(*remedy)(void *run, double drift); /* against a drift (J or J/m); NaN: against what is not finite */
-  const char *(*failure)(const void *run);        /* why there was no step, when memory is out */
 };
 
 struct frame {
@@ -46,8 +43,11 @@ struct frame {
   size_t state_size;
   const void *inputs;
   uint64_t seed;
-  double end_time; /* s: the hard end, for the progress */
-  void *sample;    /* the curve: sample_capacity samples; NULL: the protocol records none */
+  const double *time; /* s simulated */
+  const uint64_t *steps;
+  const char *failure; /* why there was no step, when memory is out */
+  double end_time;     /* s: the hard end, for the progress */
+  void *sample;        /* the curve: sample_capacity samples; NULL: the protocol records none */
   size_t sample_size, sample_capacity;
 };
 

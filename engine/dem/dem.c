@@ -81,20 +81,7 @@ static void check_speed(void *of) {
     frame_end(&run->state.frame, DEM_STOP_FAULT, OUTCOME_TIME_STEP,
               "at %.6g s grain %zu moves by %.3g grain diameters in a time step and could pass through others unseen: "
               "give a fidelity.time_step below %.3g s",
-              dem_system_time(run->system), grain, way, run->inputs.fidelity.time_step * largest_way / way);
-}
-
-static double time_of(const void *run) {
-  return dem_system_time(((const struct dem_run *)run)->system);
-}
-
-static uint64_t steps_of(const void *run) {
-  return dem_system_steps(((const struct dem_run *)run)->system);
-}
-
-static const char *failure(const void *run) {
-  (void)run;
-  return "no memory for a step";
+              dem_system_now(run->system)->time, grain, way, run->inputs.fidelity.time_step * largest_way / way);
 }
 
 static const char *remedy(void *run, double drift) {
@@ -106,7 +93,7 @@ static struct frame_energy energy_of(void *of) {
   struct dem_run *run = of;
   const struct dem_ledger ledger = dem_system_ledger(run->system);
   /* Under a load the work starts from zero: check once the sides move at their full speed. */
-  const bool early = dem_inputs_loaded(&run->inputs) && dem_system_time(run->system) < run->inputs.loading.ramp;
+  const bool early = dem_inputs_loaded(&run->inputs) && dem_system_now(run->system)->time < run->inputs.loading.ramp;
   return (struct frame_energy){.closed = dem_run_closed(&ledger),
                                .input = run->state.frame.energy_input + fabs(ledger.external_work),
                                .bound = early ? (double)NAN : run->inputs.fidelity.energy_bound};
@@ -115,7 +102,7 @@ static struct frame_energy energy_of(void *of) {
 /* The rules of the end. */
 static void check_stop(void *of) {
   struct dem_run *run = of;
-  double time = dem_system_time(run->system), last = dem_system_last_break(run->system);
+  double time = dem_system_now(run->system)->time, last = dem_system_now(run->system)->last_break;
   double half_step = 0.5 * run->inputs.fidelity.time_step;
   if (dem_inputs_loaded(&run->inputs))
     return; /* loading.c ends these runs */
@@ -163,12 +150,9 @@ static const struct frame_kind kind = {.fault = DEM_STOP_FAULT,
                                        .step = step,
                                        .stop = check_stop,
                                        .look = check_speed,
-                                       .time = time_of,
-                                       .steps = steps_of,
                                        .energy = energy_of,
                                        .fastest = fastest_grain,
-                                       .remedy = remedy,
-                                       .failure = failure};
+                                       .remedy = remedy};
 
 /* Body, system and motion of a run that has its inputs. */
 static status set_up(struct dem_run *run, struct error *error) {
@@ -209,6 +193,7 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
     return code;
   }
   double magnitude;
+  const struct dem_progress *now = dem_system_now(run->system);
   const struct dem_ledger ledger = dem_system_ledger(run->system);
   run->state.frame.closed_start = dem_run_closed(&ledger);
   run->frame = (struct frame){.kind = &kind,
@@ -216,6 +201,9 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
                               .state_size = sizeof run->state,
                               .inputs = &run->inputs,
                               .seed = seed,
+                              .time = &now->time,
+                              .steps = &now->steps,
+                              .failure = "no memory for a step",
                               .end_time = dem_inputs_end_time(inputs),
                               .sample = run->sample,
                               .sample_size = sizeof *run->sample,

@@ -92,15 +92,16 @@ static void explosion(double reference_speed) {
     fail("set-up:", &error);
   dem_disc_charge(system, t, in.grain.density, 5e4);
   const double start = now();
-  while (dem_system_time(system) < 20e-3 && dem_system_time(system) - dem_system_last_break(system) < 0.3e-3)
+  while (dem_system_now(system)->time < 20e-3 &&
+         dem_system_now(system)->time - dem_system_now(system)->last_break < 0.3e-3)
     if (!dem_system_step(system))
       fail("a position is no longer finite", NULL);
-  const double speed = (double)t->cell_count * (double)dem_system_steps(system) / (now() - start);
+  const double speed = (double)t->cell_count * (double)dem_system_now(system)->steps / (now() - start);
   const struct dem_break *log;
   printf("dem_grain_steps_per_s_explosion %.4g grain-steps/s\n", speed);
   if (reference_speed > 0.0)
     printf("dem_ratio_to_reference_explosion %.3g 1\n", speed / reference_speed);
-  printf("dem_steps_explosion %.0f 1\n", (double)dem_system_steps(system));
+  printf("dem_steps_explosion %.0f 1\n", (double)dem_system_now(system)->steps);
   printf("dem_broken_share_explosion %.3f 1\n", (double)dem_system_breaks(system, &log) / (double)t->pair_count);
   printf("dem_list_rebuilds_explosion %.0f 1\n", (double)system->now.rebuilds);
   dem_system_free(system);

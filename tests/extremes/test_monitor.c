@@ -29,10 +29,10 @@ static struct dem_run *disc(const char *extra) {
 }
 
 static void dem_ends(struct dem_run *run, int state, const char *const *words) {
-  uint64_t before = dem_system_steps(run->system);
+  uint64_t before = dem_system_now(run->system)->steps;
   frame_advance(&run->frame, 10000);
   assert_true(run->state.frame.finished);
-  assert_true(dem_system_steps(run->system) - before <= LATE);
+  assert_true(dem_system_now(run->system)->steps - before <= LATE);
   assert_int_equal(run->state.frame.outcome_state, state);
   names(run->state.frame.message, words);
   dem_run_free(run);
@@ -64,10 +64,10 @@ TEST(a_step_beyond_stability_ends_a_run) {
   for (int gear = 0; gear < 2; gear++) {
     struct dem_run *run = disc(gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet");
     run->inputs.fidelity.time_step = 4 * run->stable_time_step;
-    const uint64_t before = dem_system_steps(run->system);
+    const uint64_t before = dem_system_now(run->system)->steps;
     frame_advance(&run->frame, 1000);
     assert_true(run->state.frame.finished && run->state.frame.outcome_state != OUTCOME_COMPLETED);
-    assert_true(dem_system_steps(run->system) - before <= 1000 && *run->state.frame.message);
+    assert_true(dem_system_now(run->system)->steps - before <= 1000 && *run->state.frame.message);
     dem_run_free(run);
   }
 }

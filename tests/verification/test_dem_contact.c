@@ -19,13 +19,13 @@ static struct impact collide(struct dem_inputs in, double v) {
     assert_true(dem_system_step(s));
     const double deep = h - (s->c.x[1] - s->c.x[0]), push = -s->c.fx[0];
     if (deep > 0.0 && began < 0.0)
-      began = dem_system_time(s) - 0.5 * in.fidelity.time_step;
+      began = dem_system_now(s)->time - 0.5 * in.fidelity.time_step;
     if (began >= 0.0 && deep > 0.0)
       out.least_push = fmin(out.least_push, push);
     if (deep > out.deepest)
       out.deepest = deep, out.push = push;
     if (began >= 0.0 && deep <= 0.0) {
-      out.duration = dem_system_time(s) - 0.5 * in.fidelity.time_step - began;
+      out.duration = dem_system_now(s)->time - 0.5 * in.fidelity.time_step - began;
       break;
     }
   }

@@ -77,7 +77,7 @@ static double measured(const struct dem_inputs *in, uint64_t seed, int swings) {
     }
     const double now = (radius - rest) / mass;
     if (before * now < 0) {
-      const double time = dem_system_time(run->system) - in->fidelity.time_step * now / (now - before);
+      const double time = dem_system_now(run->system)->time - in->fidelity.time_step * now / (now - before);
       first = crossings++ ? first : time;
       last = time;
     }

@@ -83,7 +83,7 @@ status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct f
 /* Measures whether fracture had ended: breaks and loss of mass in the second half of the simulated time. */
 static status fill_finality(const struct dem_run *run, const struct outcome *outcome, struct dem_results *results,
                             struct error *error) {
-  const double half = 0.5 * dem_system_time(run->system);
+  const double half = 0.5 * dem_system_now(run->system)->time;
   const struct dem_break *log;
   size_t breaks = dem_system_breaks(run->system, &log), count;
   for (size_t k = breaks; k > 0 && log[k - 1].time > half; k--)
@@ -141,7 +141,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
   results->stable_time_step = run->stable_time_step;
   results->overlap_share = dem_system_overlap_share(run->system);
   if (run->passing_speed > 0)
-    results->passing_share = dem_system_fastest_approach(run->system) / run->passing_speed;
+    results->passing_share = dem_system_now(run->system)->fastest_approach / run->passing_speed;
   results->largest_loss = 0;
   results->energy.kinetic = ledger->kinetic;
   results->energy.beam = ledger->beam;
@@ -162,7 +162,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
 
 /* The words of broken conditions. When grains met too fast, a message says so, unless a fault has its own message. */
 static void judge(const struct dem_run *run, const struct dem_results *results, struct outcome *outcome) {
-  const double fastest = dem_system_fastest_approach(run->system);
+  const double fastest = dem_system_now(run->system)->fastest_approach;
   const struct condition_run end = {run, &run->inputs, outcome, results, !run->state.frame.finished};
   condition_after(dem_conditions, &end, outcome->warnings, sizeof outcome->warnings);
   if (run->passing_speed > 0 && fastest > run->passing_speed && outcome_is_usable(outcome->state))

@@ -81,7 +81,7 @@ status dem_loading_start(struct dem_run *run, struct error *error) {
 }
 
 void dem_loading_drive(struct dem_run *run) {
-  double time = dem_system_time(run->system), ramp = run->inputs.loading.ramp;
+  double time = dem_system_now(run->system)->time, ramp = run->inputs.loading.ramp;
   /* the speed in the middle of the step: its sum is then exact for a linear rise */
   double share = ramp > 0 ? fmin((time + 0.5 * run->inputs.fidelity.time_step) / ramp, 1) : 1;
   double speed = 0.5 * sense(run) * run->inputs.loading.rate * run->gauge_length * share;
@@ -102,7 +102,7 @@ static void sample(struct dem_run *run) {
   struct dem_state *s = &run->state;
   double n = (double)s->summed;
   const struct dem_break *log;
-  struct dem_sample point = {.time = dem_system_time(run->system),
+  struct dem_sample point = {.time = dem_system_now(run->system)->time,
                              .strain = s->strain_sum / n,
                              .stress = s->stress_sum / n,
                              .lateral_strain = (mean(run, run->right, run->right_count, true) -
@@ -137,7 +137,7 @@ void dem_loading_record(struct dem_run *run) {
   if (sense(run) * stress > s->stress_peak) {
     s->stress_peak = sense(run) * stress;
     s->strain_peak = sense(run) * strain;
-    s->time_peak = dem_system_time(run->system);
+    s->time_peak = dem_system_now(run->system)->time;
   }
   if (++s->summed == run->sample_interval)
     sample(run);

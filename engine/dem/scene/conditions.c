@@ -51,7 +51,7 @@ static double passing_before(const void *inputs) {
 /* Bodies or grains that fly, without contacts. */
 BEFORE(untouchable, !dem_inputs_loaded(in) && in->contact.law == DEM_CONTACT_OFF)
 
-AFTER(passing_after, ONLY(run->passing_speed > 0, dem_system_fastest_approach(run->system) / run->passing_speed))
+AFTER(passing_after, ONLY(run->passing_speed > 0, dem_system_now(run->system)->fastest_approach / run->passing_speed))
 
 /* Share of the beams that broke before the end of the strains whose slope is the modulus of a block in compression. */
 static double sloped(const struct condition_run *r) {

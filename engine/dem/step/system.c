@@ -305,11 +305,8 @@ bool dem_system_lacks_memory(const struct dem_system *s) {
   return s->no_memory;
 }
 
-double dem_system_time(const struct dem_system *s) {
-  return s->now.time;
-}
-uint64_t dem_system_steps(const struct dem_system *s) {
-  return s->now.steps;
+const struct dem_progress *dem_system_now(const struct dem_system *s) {
+  return &s->now;
 }
 
 static void measure(struct dem_system *s) {
@@ -393,14 +390,6 @@ double dem_system_threshold_energy(const struct dem_system *s) {
 size_t dem_system_breaks(const struct dem_system *s, const struct dem_break **log) {
   *log = s->log;
   return s->now.break_count;
-}
-
-double dem_system_last_break(const struct dem_system *s) {
-  return s->now.last_break;
-}
-
-double dem_system_fastest_approach(const struct dem_system *s) {
-  return s->now.fastest_approach;
 }
 
 size_t dem_system_outline(const struct dem_system *s, uint32_t grain, size_t capacity, struct dem_point *vertices) {

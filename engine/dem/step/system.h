@@ -8,6 +8,7 @@
 
 #include "engine/dem/lattice/tessellation.h"
 #include "engine/dem/scene/inputs.h"
+#include "engine/dem/step/progress.h"
 
 /* Energy per term, J/m. closed = kinetic + beam + contact + broken_beam + damping + friction - external_work; for a law
  * that stores energy `contact` is that energy, for another the work done on contacts. */
@@ -35,8 +36,8 @@ void dem_system_drive(struct dem_system *system, uint32_t grain, double vx, doub
 bool dem_system_step(struct dem_system *system);
 bool dem_system_lacks_memory(const struct dem_system *system); /* why a step failed */
 
-double dem_system_time(const struct dem_system *system);
-uint64_t dem_system_steps(const struct dem_system *system);
+/* How far it has come. */
+const struct dem_progress *dem_system_now(const struct dem_system *system);
 struct dem_ledger dem_system_ledger(struct dem_system *system);
 /* State of one grain: position of the centre of mass, rotation angle, velocities. */
 struct dem_grain {
@@ -52,10 +53,6 @@ double dem_system_beam_strain(const struct dem_system *system, size_t beam);
 /* Energy that would bring each present beam, unbent, to its own threshold, J/m. NaN without breaking. */
 double dem_system_threshold_energy(const struct dem_system *system);
 size_t dem_system_breaks(const struct dem_system *system, const struct dem_break **log);
-double dem_system_last_break(const struct dem_system *system); /* s; 0 before any */
-/* Largest speed so far, m/s, at which two grains without a beam between them came near each other on paths that meet:
- * centres within a mean diameter. */
-double dem_system_fastest_approach(const struct dem_system *system);
 /* Longest stable time step, s: 2 / omega_max for Verlet, 0.54 / omega_max for Gear (why: system.c), by power
  * iteration on the beams and contacts at rest. NaN: no memory. */
 double dem_system_stable_time_step(const struct dem_system *system);

@@ -10,6 +10,7 @@
 #include "engine/cpu_class.h"
 #include "engine/dem/lattice/tessellation.h"
 #include "engine/dem/scene/inputs.h"
+#include "engine/dem/step/progress.h"
 #include "engine/restart.h"
 
 enum { DEM_BLOCK = 8, DEM_MAX_VERTICES = 64, DEM_NO_PAIR = -1 };
@@ -86,19 +87,6 @@ struct dem_sums {
   dem_lane contact, damping, friction; /* power, W/m; with `measure`: contact holds energy */
   dem_lane beam;                       /* with `measure`: energy */
   uint64_t overlaps;                   /* with `measure`: pairs with positive overlap area */
-};
-
-/* Values that change from step to step and are not arrays. */
-struct dem_progress {
-  double time, last_break;
-  double fastest_approach; /* m/s: largest speed so far of two near grains without a beam on paths that meet */
-  uint64_t steps, rebuilds;
-  double contact, damping, friction, broken_beam,
-      external_work; /* booked so far, J/m (contact: laws that store none) */
-  double begun;      /* J/m, of contacts that began with a break; a part of broken_beam, with the other sign */
-  uint64_t break_count, bond_blocks, near_count;
-  uint64_t ready; /* forces belong to the positions */
-  uint64_t gear_started;
 };
 
 struct dem_kernels;

@@ -94,10 +94,6 @@ static size_t fastest_particle(void *run, double *speed) {
 }
 
 /* The remedy against a drift, by its cause. */
-static const char *failure(const void *run) {
-  return ((const struct sph_run *)run)->system->failure;
-}
-
 static const char *remedy(void *of, double drift) {
   const struct sph_run *run = of;
   if (isnan(drift))
@@ -117,14 +113,6 @@ static struct frame_energy energy_of(void *of) {
   return (struct frame_energy){.closed = sph_run_closed(&ledger),
                                .input = sph_run_energy_available(run, &ledger),
                                .bound = run->inputs.fidelity.energy_bound};
-}
-
-static double time_of(const void *run) {
-  return ((const struct sph_run *)run)->system->now.time;
-}
-
-static uint64_t steps_of(const void *run) {
-  return ((const struct sph_run *)run)->system->now.steps;
 }
 
 static bool step(void *of) {
@@ -168,12 +156,9 @@ static const struct frame_kind kind = {.fault = SPH_STOP_FAULT,
                                        .member = "particle",
                                        .step = step,
                                        .stop = stop,
-                                       .time = time_of,
-                                       .steps = steps_of,
                                        .energy = energy_of,
                                        .fastest = fastest_particle,
-                                       .remedy = remedy,
-                                       .failure = failure};
+                                       .remedy = remedy};
 
 /* ---- making ---- */
 
@@ -191,6 +176,9 @@ static void begin(struct sph_run *run) {
                               .state_size = sizeof run->state,
                               .inputs = &run->inputs,
                               .seed = run->seed,
+                              .time = &run->system->now.time,
+                              .steps = &run->system->now.steps,
+                              .failure = run->system->failure,
                               .end_time = run->inputs.stop.end_time,
                               .sample = run->sample,
                               .sample_size = sizeof *run->sample,
