@@ -1,6 +1,7 @@
 /* Cholesky factors and eigenvectors. */
 #include "analysis/inference/inference.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -21,28 +22,19 @@ double covariance_log_determinant(size_t n, const double *factor) {
   return sum;
 }
 
-static void forward(size_t n, const double *factor, const double *b, double *x) {
-  for (size_t i = 0; i < n; i++) {
-    double sum = b[i];
-    for (size_t j = 0; j < i; j++)
-      sum -= factor[i * n + j] * x[j];
-    x[i] = sum / factor[i * n + i];
-  }
-}
-
 void covariance_solve(size_t n, const double *factor, const double *b, double *x) {
-  forward(n, factor, b, x);
-  for (size_t i = n; i-- > 0;) {
-    double sum = x[i];
-    for (size_t j = i + 1; j < n; j++)
-      sum -= factor[j * n + i] * x[j];
-    x[i] = sum / factor[i * n + i];
-  }
+  const gsl_matrix_const_view f = gsl_matrix_const_view_array(factor, n, n);
+  const gsl_vector_const_view from = gsl_vector_const_view_array(b, n);
+  gsl_vector_view to = gsl_vector_view_array(x, n);
+  gsl_linalg_cholesky_solve(&f.matrix, &from.vector, &to.vector);
 }
 
 double covariance_distance(size_t n, const double *factor, const double *b, double *half) {
+  const gsl_matrix_const_view f = gsl_matrix_const_view_array(factor, n, n);
+  gsl_vector_view to = gsl_vector_view_array(half, n);
   double sum = 0;
-  forward(n, factor, b, half);
+  memmove(half, b, n * sizeof *half);
+  gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &f.matrix, &to.vector);
   for (size_t i = 0; i < n; i++)
     sum += half[i] * half[i];
   return sum;
