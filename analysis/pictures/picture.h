@@ -57,11 +57,11 @@ status picture_sheet_close(struct picture_sheet *sheet, status code, struct erro
 
 struct picture_panel {
   struct picture_body body;
-  const char *caption;               /* under the panel; NULL: none */
+  const char *caption;               /* under the body; NULL: none */
   const struct picture_frame *frame; /* NULL: the whole body without distant dust */
 };
-/* Draws one to three panels side by side, each with its own scale bar. subtitle may be NULL. */
-status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
+/* Draws a body with its scale bar. subtitle may be NULL. */
+status picture_fragments(const char *path, double width, const char *title, const char *subtitle,
                          const struct picture_panel *panel, struct error *error);
 
 /* title: of the sheet; caption: of this picture. panel->caption is the note under the last one. */

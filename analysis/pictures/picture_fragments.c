@@ -265,56 +265,40 @@ static status draw_body(cairo_t *cairo, const struct picture_panel *panel, const
   return STATUS_OK;
 }
 
-static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
-                         double top, double width, double height, double font) {
-  char note[NOTE] = "";
-  const double scale = picture_canvas_place(cairo, view, left, top, width, height);
-  const status code = draw_body(cairo, panel, view, note);
-  cairo_restore(cairo);
-  picture_canvas_scale_bar(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
-  cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
-  picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false, note);
-  return code;
-}
-
 static status fail(const char *path, status code, struct error *error) {
   return status_fail(error, code, "%s: %s", path,
                      code == STATUS_MEMORY ? "no memory for the picture"
                                            : "fragment numbers beyond the number of cells");
 }
 
-status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
+status picture_fragments(const char *path, double width, const char *title, const char *subtitle,
                          const struct picture_panel *panel, struct error *error) {
-  double view[3][4], tallest = 0, font = width / (panels > 1 ? 62 : 46);
-  if (panels < 1 || panels > 3)
-    return status_fail(error, STATUS_USAGE, "%s: one to three panels, not %zu", path, panels);
-  double gap = 0.03 * width, each = (width - gap * (double)(panels + 1)) / (double)panels;
-  for (size_t p = 0; p < panels; p++) {
-    if (panel[p].body.cells == 0)
-      return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
-    const struct picture_frame *frame = panel[p].frame;
-    const status framed = frame ? STATUS_OK : picture_fragments_view(&panel[p].body, view[p]);
-    if (frame)
-      memcpy(view[p], frame->view, sizeof view[p]);
-    if (framed)
-      return fail(path, framed, error);
-    double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
-    if (!isfinite(tall))
-      return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);
-    tallest = fmax(tallest, tall);
-  }
-  tallest = fmin(tallest, 1.5 * each);
-  double top = font * (0.8 + (title ? 1.9 : 0) + (subtitle ? 1.6 : 0));
+  const double font = width / 46, gap = 0.03 * width, wide = width - 2 * gap;
+  double view[4];
+  char note[NOTE] = "";
+  if (panel->body.cells == 0)
+    return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
+  const status framed = panel->frame ? STATUS_OK : picture_fragments_view(&panel->body, view);
+  if (framed)
+    return fail(path, framed, error);
+  if (panel->frame)
+    memcpy(view, panel->frame->view, sizeof view);
+  double tall = wide * (view[3] - view[1]) / (view[2] - view[0]);
+  if (!isfinite(tall))
+    return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);
+  tall = fmin(tall, 1.5 * wide);
+  const double top = font * (0.8 + (title ? 1.9 : 0) + (subtitle ? 1.6 : 0)), below = top + tall + 1.75 * font;
   struct picture_canvas canvas;
-  status code = STATUS_OK;
-  TRY(picture_canvas_open(&canvas, path, width, top + tallest + 3 * font, error));
-  picture_canvas_head(canvas.cairo, gap, width - 2 * gap, font, title, font, subtitle);
-  for (size_t p = 0; p < panels && !code; p++) {
-    code = draw_panel(canvas.cairo, &panel[p], view[p], gap + (each + gap) * (double)p, top, each, tallest, font);
-    if (code)
-      fail(path, code, error);
-  }
-  return picture_canvas_close(&canvas, code, error);
+  TRY(picture_canvas_open(&canvas, path, width, top + tall + 3 * font, error));
+  cairo_t *cairo = canvas.cairo;
+  picture_canvas_head(cairo, gap, wide, font, title, font, subtitle);
+  const double scale = picture_canvas_place(cairo, view, gap, top, wide, tall);
+  const status code = draw_body(cairo, panel, view, note);
+  cairo_restore(cairo);
+  picture_canvas_scale_bar(cairo, gap + 0.02 * wide, below, scale, wide, font);
+  cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
+  picture_canvas_text(cairo, gap + wide * 0.98, below, font, PICTURE_RIGHT, false, note);
+  return picture_canvas_close(&canvas, code ? fail(path, code, error) : STATUS_OK, error);
 }
 
 status picture_fragments_on_sheet(struct picture_sheet *sheet, const char *title, const char *caption,

@@ -143,8 +143,8 @@ static status draw_grains(const char *fields, const char *picture, const struct 
     code = picture_fragments_on_sheet(movie->sheet, options->caption ? options->caption : title, caption, &panel,
                                       error);
   } else
-    code = picture_fragments(picture, width_of(options), options->caption ? options->caption : title, numbers, 1,
-                             &panel, error);
+    code = picture_fragments(picture, width_of(options), options->caption ? options->caption : title, numbers, &panel,
+                             error);
 cleanup:
   picture_fragments_clear(&panel.body);
   return code;
