@@ -40,7 +40,7 @@ static void fit(const char *name, case_model model, size_t inputs, size_t output
     SAY("scatter", s->constant, s->slope[0], s->slope[1], s->shared, s->skewness, s->excess, (double)s->freedom);
     SAY("surface", fit.surfaces.left_out[k], (double)fit.surfaces.used[k]);
     say("correlation", outputs, &fit.surfaces.correlation[k * outputs]);
-    for (double p = 0.05; p < 1; p += 0.45)
+    for (double p = 0.05; p < 1; p += 0.9)
       SAY("predicted", p, posterior_predicted(&fit.surfaces.model, &fit.posterior, k, p));
     SAY("below", posterior_below(&fit.surfaces.model, &fit.posterior, k, fit.surfaces.model.data[k].value));
   }
@@ -52,7 +52,7 @@ static void fit(const char *name, case_model model, size_t inputs, size_t output
         posterior_quantile(&fit.posterior, i, 0.95));
   SAY("node", (double)posterior_node(&fit.posterior, 0), (double)posterior_node(&fit.posterior, 0.4),
       (double)posterior_node(&fit.posterior, 1));
-  for (double z = -1; z < 2; z += 0.8) {
+  for (double z = -1; z < 2; z += 1.6) {
     const double at[INFERENCE_INPUTS] = {z, 0.3, -z, 0.1, z};
     double x[INFERENCE_INPUTS], expected[INFERENCE_OUTPUTS];
     posterior_place(&fit.surfaces.model, at, x);
