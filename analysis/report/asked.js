@@ -59,9 +59,10 @@ function thinned(store) {
   if (kept < all) parts.push(`single runs: of ${all}, ${kept} are here, the first ${plural(Number(facts.replicates_kept), 'seed')} of ${Number(facts.runs_of_every_nth_point) > 1 ? `every ${facts.runs_of_every_nth_point}th` : 'each'} point`);
   if (Number(facts.results_left_out)) parts.push(`${plural(Number(facts.results_left_out), 'result')} of single runs (their means are here)`);
   if (Number(facts.spectra_of_every_nth_point) > 1) parts.push(`spectra, but of every ${facts.spectra_of_every_nth_point}th point`);
+  if (Number(facts.points_of_studies)) parts.push(`${plural(Number(facts.points_of_studies), 'point')} (${plural(Number(facts.runs_of_studies), 'run')}) of studies and searches (--studies)`);
   if (Number(facts.pictures_left_out)) parts.push(`${plural(Number(facts.pictures_left_out), 'picture')} of kept fields (of run ${facts.pictures_left_out_of}: no room, ${facts.pictures_room})`);
   if (Number(facts.pictures_not_drawn)) parts.push(`${plural(Number(facts.pictures_not_drawn), 'picture')}: the fields files cannot be read`);
-  return `${parts.join('; ')}. Results of single runs have 7 digits. Statistics are of all runs. Drop the whole store below to see all of it.`;
+  return `${parts.join('; ')}. Results of single runs have 7 digits. Statistics are of all runs of the points here. Drop the whole store below to see all of it.`;
 }
 
 function failures(store) {

@@ -41,7 +41,7 @@ export async function draw(figure, spec, about) {
     {expr: expressionInterpreter, renderer: 'svg', container: chart, hover: true});
   views.set(figure, view);
   await view.runAsync();
-  return view;
+  return view.resize().runAsync(); // the first layout changes the ticks, and so the room that their labels need
 }
 
 export function nothing(figure, text) {

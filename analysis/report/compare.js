@@ -44,7 +44,7 @@ export function showCompare() {
       ['inputs', first.name, ...others.flatMap((other) => [other.name, `${other.name} minus ${first.name}`])],
       rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputs([cell, ...rest]), shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, `These stores have no point in common${state.stores.some((one) => one.whole) ? ' by what both vary' : ''}.${none.join('')}`),
-    ...[...new Set(state.stores.map((one, i) => doubtSentence(one, rows.map((row) => row[i]).filter(Boolean))))].map((text) => element('p', {}, text)),
+    element('p', {}, doubtSentence(state.stores.map((one, i) => [one, [...new Set(rows.map((row) => row[i]).filter(Boolean))]]))),
     rows.length ? element('p', {}, 'Where at least half of the runs have one seed on both sides, the difference is of these pairs. The same from a shell:') : null,
     ...(state.quantity === 'beta' ? [] : others.filter((other) => !other.facts.no_pair).map((other) => element('p', {}, command(`clast compare ${operandOf(first)} ${operandOf(other)}${onlyOf(chosen)} --quantity ${state.quantity}`)))));
 }

@@ -33,11 +33,11 @@ const doubtText = ({doubt, n}) => (doubt ? `${doubt.doubtful} of ${plural(n ?? 0
 let told = new Set(); // words that the caption of the plane explains; the captions below it name them only
 
 // What the marks of these cells mean: how many runs, which conditions they break, and what to do.
-export function doubtSentence(from, rows, quantity = state.quantity, inPlane = false) {
-  const doubtful = rows.filter((row) => row.doubt);
+export function doubtSentence(parts, quantity = state.quantity, inPlane = false) { // parts: [[store, cells], ...]
+  const rows = parts.flatMap(([, cells]) => cells), doubtful = rows.filter((row) => row.doubt);
   if (doubtful.length === 0) return '';
   const result = ` ${quantity === 'beta' ? 'mean_fragment_mass' : quantity.replace(/^result_[^_]+_/, '')} `;
-  const known = has(from, 'doubt_word') ? ask(from, questions.sentences).filter(({results}) => results === null || results.includes(result)) : [];
+  const known = parts.flatMap(([from]) => (has(from, 'doubt_word') ? ask(from, questions.sentences) : [])).filter(({results}) => results === null || results.includes(result));
   const sentences = new Map(known.map((row) => [row.word, `${row.withheld ? ' (withholds the value)' : ''}: ${row.sentence}`]));
   const sum = (of) => of.reduce((total, count) => total + (count ?? 0), 0);
   const words = [...new Set(doubtful.flatMap((row) => wordsOf(row.doubt)))];
@@ -76,7 +76,7 @@ function axisOf(column, rows, title) {
   const numeric = values.every((value) => typeof value === 'number');
   const sampled = values.length > 12 && values.length === rows.length; // each point has a value of its own: no grid
   if (numeric && (sampled || values.length > MOST_CELLS)) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title, axis: numbers(values)}};
-  const order = values.slice().sort((a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b))));
+  const order = values.slice().sort(ascending);
   return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: NUMBER}}};
 }
 
@@ -111,7 +111,7 @@ function slice() {
 
 const inSlice = (row, at) => Object.entries(at).every(([column, value]) => (row[column] ?? null) === value);
 const sliceText = (at) => Object.entries(at).map(([column, value]) => `${label(state.stores, column)} = ${valueText(column, value)}`).join(', ');
-const valueText = (column, value) => (value === null ? 'none' : String(placeOf(column, value)));
+const valueText = (column, value) => (value === null ? 'none' : number(placeOf(column, value), 7));
 
 function data(quantity) {
   return cells(store(), quantity).map((cell) => ({
@@ -172,20 +172,27 @@ function planeSpec(rows, title) {
   return {params: PARAMETERS, data: {values: rows.map((row, i) => ({...row, cell: texts[i][fitting ?? 2]}))}, height, layer: layers};
 }
 
-function lineSpec(rows, title) {
+const ascending = (a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b)));
+
+function lineSpec(known, title) {
+  const rows = known.map((row) => ({...row, cell: (row.weak ? '~' : '') + row.mark})).sort((a, b) => ascending(a[state.x], b[state.x]));
   const x = axisOf(state.x, rows, label(state.stores, state.x));
   const numeric = rows.every((row) => typeof row[state.x] === 'number');
   const values = rows.map((row) => row[state.x]);
   const place = numeric ? {field: state.x, type: 'quantitative', title: x.encoding.title, scale: scale(values), axis: numbers(values)} : x.encoding;
-  const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false, padding: 8}};
+  const low = Math.min(...rows.map((row) => row.low)), high = Math.max(...rows.map((row) => row.high)), room = 0.05 * (high - low);
+  const {least, most} = rangeOf(state.stores, state.quantity); // a share is no less than 0
+  const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false, ...(room > 0 && {domain: [Math.max(low - room, least ?? -Infinity), Math.min(high + room, most ?? Infinity)]})}};
+  const joined = new Set(values).size === rows.length; // as by `clast plot`
   return {params: PARAMETERS, data: {values: rows}, height: 340, layer: [
+    ...(joined ? [{mark: {type: 'line', color: COLOURS[0], strokeWidth: 1.5, tooltip: null}, encoding: {x: place, y, order: {value: null}}}] : []),
     {mark: {type: 'rule', strokeWidth: 1.5}, encoding: {x: place, y: {...y, field: 'low'}, y2: {field: 'high'}}},
     {params: [{name: 'brush', select: {type: 'interval', encodings: ['x']}}],
       mark: {type: 'point', filled: true, size: 110, cursor: 'pointer', color: COLOURS[0]},
       encoding: {x: place, y, stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
         strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
         tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}},
-    {transform: [{filter: 'datum.doubt'}], mark: {type: 'text', text: '!', dx: 12, fontSize: 14, fontWeight: 'bold', tooltip: null}, encoding: {x: place, y}},
+    {mark: {type: 'text', align: 'left', dx: 7, dy: -9, fontSize: 14, fontWeight: 'bold', tooltip: null}, encoding: {x: place, y, text: {field: 'cell'}}},
     {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}}]};
 }
 
@@ -217,7 +224,7 @@ function listen(view) {
   });
   view.addEventListener('click', (_, item) => {
     const id = item?.datum?.point_id;
-    if (id === undefined) return;
+    if (id === undefined || item.mark.marktype === 'line') return; // a line has the first point's number
     const ids = new Set(state.chosen);
     if (!ids.delete(id)) ids.add(id);
     choose(ids);
@@ -282,11 +289,11 @@ export async function showPlane() {
   const untold = [...new Set(rows.map((row) => row.untold).filter(Boolean))].join(', or ');
   const reason = untold ? ` -: the exponent is too uncertain to print: ${untold}.` : '';
   if (rows.length === 0) return nothing(figure, `No point has ${sliceText(at)}: choose another value above.`);
-  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence(store(), rows, state.quantity, true)}`);
+  if (known.length === 0) return nothing(figure, `No point has a value of this quantity.${reason}${doubtSentence([[store(), rows]], state.quantity, true)}`);
   const spec = !state.x ? {layer: []} : state.y ? planeSpec(rows, title) : lineSpec(known, title), texts = spec.layer.some(({encoding}) => encoding.text?.field === 'cell');
-  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With the keyboard: in the table of points below.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${state.x ? doubtSentence(store(), rows, state.quantity, true) : ''}`;
+  const caption = `${title}: ${state.quantity === 'beta' ? 'fit to all' : 'mean over the'} runs of each point${state.stores.length > 1 ? ` of ${store().name} (the choice Store shows the others)` : ''}${Object.keys(at).length ? ` with ${sliceText(at)}` : ''}. ${resolutionSentence(rows, texts)}${behind(at)} Click a cell, or drag over several, to choose points. With the keyboard: in the table of points below.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}${reason}${state.x ? doubtSentence([[store(), rows]], state.quantity, true) : ''}`;
   if (!state.x) {
-    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows, false)}${doubtSentence(store(), rows, state.quantity, true)}`);
+    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows, false)}${doubtSentence([[store(), rows]], state.quantity, true)}`);
     return;
   }
   const inputs = [state.x, state.y].filter(Boolean);

@@ -42,7 +42,7 @@ export async function showSeeds() {
     .map((sample) => ({...sample, name: nameOf(sample.from, sample.point), values: valuesOf(sample.from, sample.point, quantity)})).filter((sample) => sample.values.length);
   if (samples.length === 0) {
     const kept = chosenPoints().some((point) => ask(from, questions.values('run_id'), {point: point.point_id}).length);
-    return nothing(figure, kept ? `No run of the chosen points has a value of this quantity.${doubtSentence(from, cells(from, quantity).filter((cell) => state.chosen.has(cell.point_id)))}`
+    return nothing(figure, kept ? `No run of the chosen points has a value of this quantity.${doubtSentence([[from, cells(from, quantity).filter((cell) => state.chosen.has(cell.point_id))]])}`
       : 'No run of the chosen points is on this page.');
   }
   const apart = samples.length <= COLOURS.length;
@@ -55,7 +55,7 @@ export async function showSeeds() {
   const y = {field: 'runs', type: 'quantitative', title: 'runs', axis: {tickMinStep: 1, format: 'd'}};
   const cellsOf = new Map([...new Set(samples.map((sample) => sample.from))].map((one) => [one, new Map(cells(one, quantity).map((cell) => [cell.point_id, cell]))]));
   const whole = (sample) => cellsOf.get(sample.from).get(sample.point.point_id);
-  const doubts = [...cellsOf.keys()].map((one) => doubtSentence(one, samples.filter((sample) => sample.from === one).map(whole))).join('');
+  const doubts = doubtSentence(samples.map((sample) => [sample.from, [whole(sample)]]));
   const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values, rangeOf(state.stores, quantity)), all: apart ? whole(sample) : null}));
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend: names.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null};
   const dash = {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend: colour.legend};
@@ -82,6 +82,6 @@ export async function showSeeds() {
   const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['lower quartile', quantileOf(0.25, 'quarter')], ['upper quartile', quantileOf(0.75, 'threeQuarters')],
     ['standard deviation of the runs here', (row) => number(row.sd)], ['smallest here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];
   if (means.some((row) => row.all?.modes)) lines.splice(1, 0, ['modes', (row) => (row.all ? modesText(row.all) : '-')]);
-  fill(below, table(`${title}: mean and quantiles with their 95 % intervals over seeds`,
+  fill(below, table(`${title}: mean and quantiles with their 95 % intervals over seeds, as far as the runs tell them`,
     ['', ...names], lines.map(([word, value]) => [word, ...means.map(value)])));
 }

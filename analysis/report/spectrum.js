@@ -82,9 +82,10 @@ export async function showSpectrum() {
   const complete = [...new Set(drawn.map(({complete}) => complete).filter(Boolean).sort((a, b) => a - b).map((mass) => number(mass, 2)))];
   const names = drawn.map((curve) => curve.name), kg = drawn[0].from.facts.mass_unit ?? 'kg';
   const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', ...ROOM}, title: `fragment mass m (${kg})`, axis: logAxis(rows.map((row) => row.mass))};
-  const foot = Math.min(...rows.map((row) => (row.low > 0 ? row.low : row.density / 3))); // of the axis; an interval that reaches 0 ends there
+  const low = Math.min(...rows.map((row) => (row.low > 0 ? row.low : row.density / 3))), high = Math.max(...rows.map((row) => row.high));
+  const room = Math.max(1.1, (high / low) ** 0.05), foot = low / room; // of the axis; only an interval that reaches 0 ends there
   for (const row of rows) row.low = row.low > 0 ? row.low : foot / 10;
-  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log', domainMin: foot, nice: false}, title: `F(m), fragments per run and ${kg}`, axis: logAxis([foot, ...rows.map((row) => row.high)])});
+  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log', domainMin: foot, domainMax: high * room, nice: false}, title: `F(m), fragments per run and ${kg}`, axis: logAxis([foot, high * room])});
   const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null, symbolOpacity: 1} : null;
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
   const layer = [
@@ -101,7 +102,7 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => marked(`${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`, of(curve).some((cell) => cell.doubt) && {withheld: 0})).join('; ');
   await draw(figure, {data: {values: rows}, height: heightWith(names), layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. ${drawn[0].points.length > 1 ? 'Points together have no bars here: the clast command below has their intervals.' : 'Bars: 95 % intervals over seeds, down to the axis where one reaches 0.'}${fits.some((fit) => fit?.ends.length) ? ' Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have, so that they lie higher; p (clast exponents): below 0.1 a power law does not fit.' : ''}${complete.length ? ` Pale marks: below ${complete.join(', ')} ${kg} fragments are missing (too few particles or grains).` : ''}${[...doubted.keys()].map((from) => doubtSentence(from, drawn.filter((curve) => curve.from === from).flatMap(of), 'beta')).join('')}`,
+    caption: `${told}. ${drawn[0].points.length > 1 ? 'Points together have no bars here: the clast command below has their intervals.' : 'Bars: 95 % intervals over seeds, down to the axis where one reaches 0.'}${fits.some((fit) => fit?.ends.length) ? ' Lines: F(m) ~ m^-β by maximum likelihood without the largest fragment of each run, which the marks have.' : ''}${complete.length ? ` Pale marks: below ${complete.join(', ')} ${kg} fragments are missing (too few particles or grains).` : ''}${doubtSentence(drawn.map((curve) => [curve.from, of(curve)]), 'beta')}`,
     command: commandsOf(drawn.flatMap(({from, points}) => points.map((point) => ({from, point}))), ['clast spectrum', drawn[0].points.length > 1 ? ' --by ""' : '', 'spectrum']),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'number_density', 'number_density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

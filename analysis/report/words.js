@@ -39,11 +39,12 @@ export function withError(mean, half) {
   return `${shown(mean)} ± ${shown(half)}`;
 }
 
-// A value with the ends of its interval, in the digits of the farther one.
+// A value with the ends of its interval, in the digits of the farther one: "0.11 (0.05 to 0.27)", "0.11 (to 0.27)", "0.11 (0.05 on)".
 export function between(value, low, high) {
-  if (low === null || high === null || !(high > low)) return number(value);
-  const places = Math.max(0, -lastDecade(Math.max(high - value, value - low)));
-  return `${fixed(value, places)} (${fixed(low, places)} to ${fixed(high, places)})`;
+  const far = Math.max((high ?? value) - value, value - (low ?? value));
+  if (!(far > 0)) return number(value);
+  const shown = (end) => fixed(end, Math.max(0, -lastDecade(far)));
+  return `${shown(value)} (${low === null ? `to ${shown(high)}` : high === null ? `${shown(low)} on` : `${shown(low)} to ${shown(high)}`})`;
 }
 
 // "0.11 (0 to 0.27)": an interval that ends with the range of its result (campaign/terminal/uncertainty.c).

@@ -370,11 +370,13 @@ static void write_results(const struct reading *reading, double runs, sqlite3_st
 
 static status copy_runs(struct reading *reading, struct store *store, struct error *error) {
   int replicates = 1, every = 1;
-  double all = 0;
+  double all = 0, of_studies = 0;
   struct ask_column axes[COLUMNS];
   size_t axis_count = 0, left_out = 0;
   TRY(choose_room(store, &replicates, &every, error));
   TRY(answer_number(store, &all, error, "SELECT sum(runs + failed) FROM point_total"));
+  TRY(answer_number(store, &of_studies, error, "%s",
+                    "SELECT count(*) FROM main.run AS p WHERE " POINT_IS_OF_STUDY("main.")));
   TRY(ask_columns_axes(store, false, COLUMNS, axes, &axis_count, error));
   sqlite3_str *columns = sqlite3_str_new(NULL);
   for (size_t i = 0; i < axis_count; i++)
@@ -393,6 +395,8 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
                 sqlite3_str_finish(columns), every, every > 1 ? 1 : 0, replicates),
       "runs", 16 + axis_count));
   TRY(set_fact(reading->page, "runs", (size_t)all, error));
+  TRY(set_fact(reading->page, "points_of_studies", (size_t)ask_choice_left_out(store), error));
+  TRY(set_fact(reading->page, "runs_of_studies", (size_t)of_studies, error));
   TRY(set_fact(reading->page, "results_left_out", left_out, error));
   TRY(set_fact(reading->page, "modes_runs", SCATTER_SHAPE_RUNS, error));
   TRY(set_fact(reading->page, "replicates_kept", (size_t)replicates, error));

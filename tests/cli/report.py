@@ -248,24 +248,30 @@ def written_store(browser):
     done("the file of a store that is being written is read, and the page says what may be missing")
 
 
-def loads_again(browser):
-    """As a page of --watch: it loads itself again after a second, with what was chosen. Two modes of any result are marked."""
+def alter(page, to, *statements):
+    """A copy of the page with other data."""
     html = open(page, encoding="utf-8").read()
     (data,) = re.findall(r'class="store">([^<]*)<', html)
     with sqlite3.connect(":memory:") as db:
         db.deserialize(gzip.decompress(base64.b64decode(data)))
-        db.execute("UPDATE fact SET value = '1' WHERE name = 'refresh'")
-        db.execute("INSERT INTO modes VALUES (3, 'broken', 20, 60, 40, 0.25, 0.1, 0.5)")
-        db.execute("DELETE FROM doubt WHERE point_id = 3") # a run stands in one row: with all its words
-        db.execute("INSERT INTO doubt VALUES (3, 'sph', 'box', 3)")
-        db.execute("INSERT INTO doubt_mark VALUES ('sph', 'box', 'largest_fraction', 'box', 1)")
-        db.execute("UPDATE runs SET largest_fraction = NULL")
-        db.execute("INSERT INTO campaign SELECT campaign_id + n, 'more ' || min(n, 4), iif(n = 1, '# Written by clast find: a round of its runs.\n', '') || document, added_at FROM campaign, (SELECT 1 AS n UNION SELECT 2 UNION SELECT 3 UNION SELECT 4 UNION SELECT 5)")
-        db.execute("INSERT INTO campaign_point SELECT 5, min(point_id) FROM campaign_point UNION SELECT 6, max(point_id) FROM campaign_point")
+        for statement in statements:
+            db.execute(statement)
         db.commit()
-        changed = base64.b64encode(gzip.compress(db.serialize())).decode()
-    with open("again.html", "w", encoding="utf-8") as file:
-        file.write(html.replace(data, changed))
+        with open(to, "w", encoding="utf-8") as file:
+            file.write(html.replace(data, base64.b64encode(gzip.compress(db.serialize())).decode()))
+
+
+def loads_again(browser):
+    """As a page of --watch: it loads itself again after a second, with what was chosen. Two modes of any result are marked."""
+    alter(page, "again.html",
+          "UPDATE fact SET value = '1' WHERE name = 'refresh'",
+          "INSERT INTO modes VALUES (3, 'broken', 20, 60, 40, 0.25, 0.1, 0.5)",
+          "DELETE FROM doubt WHERE point_id = 3",
+          "INSERT INTO doubt VALUES (3, 'sph', 'box', 3)",
+          "INSERT INTO doubt_mark VALUES ('sph', 'box', 'largest_fraction', 'box', 1)",
+          "UPDATE runs SET largest_fraction = NULL",
+          "INSERT INTO campaign SELECT campaign_id + n, 'more ' || min(n, 4), iif(n = 1, '# Written by clast find: a round of its runs.\n', '') || document, added_at FROM campaign, (SELECT 1 AS n UNION SELECT 2 UNION SELECT 3 UNION SELECT 4 UNION SELECT 5)",
+          "INSERT INTO campaign_point SELECT 5, min(point_id) FROM campaign_point UNION SELECT 6, max(point_id) FROM campaign_point")
     browser.open("again.html", "#points=3&quantity=broken")
     wait_shown(browser, 1)
     start = browser.js("performance.timeOrigin")
@@ -429,16 +435,40 @@ def open_text(browser, page, selector):
 
 
 def ends(browser):
-    """The first and the last mark of a chart lie within its frame. ~ is told where the chart has it."""
+    """Marks lie within the frame of a chart, and only intervals that reach 0 touch its foot. ~ is told where the chart has it."""
     browser.open(f"{three}.html", "#x=threshold_strain&y=")
     wait_shown(browser, 1)
+    keep_downloads(browser)
+    boxes = lambda what: browser.js(f"[...document.querySelectorAll({json.dumps(what)})].map((e) => e.getBoundingClientRect()).map((r) => [r.left, r.top, r.right, r.bottom])")
     for figure in ("#plane-chart", "#spectrum"):
-        left, right, *marks = browser.js(f"""(() => {{ const box = (e) => e.getBoundingClientRect(), view = box(document.querySelector('{figure} .mark-group.role-frame path.background'));
-            return [view.left, view.right, ...[...document.querySelectorAll('{figure} .mark-symbol.role-mark path')].flatMap((e) => [box(e).left, box(e).right])]; }})()""")
-        assert len(marks) > 4 and left <= min(marks) and max(marks) <= right, (figure, left, right, marks)
+        left, top, right, bottom = boxes(f"{figure} .mark-group.role-frame path.background")[0]
+        marks = boxes(f"{figure} .mark-symbol.role-mark path")
+        assert len(marks) > 2 and all(left <= m[0] and m[2] <= right for m in marks), (figure, left, right, marks)
+        assert figure != "#spectrum" or all(top <= m[1] and m[3] <= bottom for m in marks), (top, bottom, marks)
+        (picture,), words = boxes(f"{figure} svg"), boxes(f"{figure} svg text")
+        assert all(picture[0] <= w[0] + 1 and w[2] <= picture[2] + 1 for w in words), (figure, picture, words)
+    rows = list(csv.DictReader(io.StringIO(taken(browser, "#spectrum", "CSV"))))
+    above = [r for r in rows if r["number_density_hw95"] and float(r["number_density"]) > float(r["number_density_hw95"])]
+    bars = boxes("#spectrum .mark-rule.role-mark line")
+    assert 0 < len(above) == sum(b[3] < bottom - 2 for b in bars) < len(bars), (rows, bottom, bars)
     caption = text(browser, "#plane-chart figcaption")
-    assert "(weak): too few runs" in caption and "~" not in caption, caption
+    of_three = list(csv.DictReader(io.StringIO(taken(browser, "#plane-chart", "CSV"))))
+    weak = sum(row["weak"] == "1" for row in of_three)
+    assert 0 < weak == browser.js("[...document.querySelectorAll('#plane-chart .role-mark text')].filter((t) => t.textContent.includes('~')).length"), weak
+    assert "~: weak, too few runs" in caption and "(weak)" not in caption, caption
+    assert not boxes("#plane-chart .mark-line.role-mark path"), "points of one place are joined"
     done("no mark is cut by the frame")
+    alter(f"{three}.html", "narrow.html", "UPDATE spectra SET count_hw95 = count_mean / 2")
+    browser.open("narrow.html")
+    wait_shown(browser, 1)
+    bottom, bars = boxes("#spectrum .mark-group.role-frame path.background")[0][3], boxes("#spectrum .mark-rule.role-mark line")
+    assert len(bars) > 4 and all(b[3] < bottom - 2 for b in bars), (bottom, bars)
+    browser.open("levels.html", "#x=grain_spacing&y=&quantity=dust_fraction")
+    wait_shown(browser, 1)
+    assert len(boxes("#plane-chart .mark-line.role-mark path")) == 1
+    ticks = browser.js("[...document.querySelectorAll('#plane-chart .role-axis-label text')].map((t) => t.textContent)")
+    assert not any(t.startswith("\u2212") for t in ticks), ticks
+    done("a line joins the means of one input; the axis of a share does not go below 0")
 
 
 def side_by_side(browser):
@@ -510,6 +540,12 @@ def of_a_study(browser):
     of = lambda axis: browser.js(f"document.querySelector('#choices [name={axis}]').value")
     assert (of("x"), of("y")) == ("grain_spacing", ""), (of("x"), of("y"))
     done("a page of a study opens on one input")
+    with sqlite3.connect("file:load.db?mode=ro", uri=True) as db:
+        points, runs = db.execute("SELECT count(DISTINCT point_id), count(*) FROM runs WHERE study").fetchone()
+    asked = open_text(browser, "load.html", "#asked")
+    assert points > 0 and f"{points} points ({runs} runs) of studies and searches (--studies)" in asked, (points, runs, asked)
+    assert "studies and searches" not in open_text(browser, "studied.html", "#asked")
+    done("a page names the points that it leaves out")
 
 
 def widths(browser):
