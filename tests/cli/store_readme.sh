@@ -23,6 +23,10 @@ for block in sql-*; do
   expect 0 "$clast" query demo.db "$(cat "$block")" # our own connection takes the same text
 done
 
+# A standard error is of the runs of one point.
+same "$(sed -n 's/.*runs.groupby(\[\(.*\)\]).largest_fraction.*/\1/p' "$source/db/README.md" | tr -d '"')" \
+  "$(number demo.db "select group_concat(column_name, ', ') from (select * from axis order by path desc)" | tr -d '"')" "inputs of a group"
+
 python -c "import pandas" 2>/dev/null || cat >pandas.py <<'PY'
 def read_sql(text, connection):
     rows = connection.execute(text).fetchall()
@@ -33,4 +37,4 @@ for block in python-*; do
   cp "$block" "$block.py"
   expect 0 env PYTHONPATH=. python3 "$block.py"
 done
-done_after 23
+done_after 24
