@@ -3,6 +3,7 @@
 
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
+#include "engine/cpu_class.h"
 
 struct options {
   bool json;
@@ -17,7 +18,7 @@ static status run(const struct command_line *line, struct error *error) {
       {"flags", BUILD_FLAGS},      {"MPI", BUILD_MPI},
       {"SQLite", BUILD_SQLITE},    {"HDF5", BUILD_HDF5},
       {"GSL", BUILD_GSL},          {"cairo", BUILD_CAIRO},
-      {"libfyaml", BUILD_FYAML},
+      {"libfyaml", BUILD_FYAML},   {"cpu_class", cpu_class_name(cpu_class_choose())},
   };
   const size_t facts_count = sizeof facts / sizeof facts[0];
   if (((const struct options *)line->options)->json) {

@@ -73,7 +73,7 @@ ok "a letter is one option"
 
 expect 0 "$clast" --version
 prints "clast $(sed -nE 's/^project\(clast VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")"
-for fact in commit compiler flags MPI SQLite HDF5 GSL libfyaml; do prints "$fact"; done
+for fact in commit compiler flags MPI SQLite HDF5 GSL libfyaml cpu_class; do prints "$fact"; done
 expect 0 "$clast" --version --json
 python -c "import json; d = json.load(open('out')); assert d['version'] and d['commit'] and d['compiler'], d"
 ok "--version --json is JSON"
