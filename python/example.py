@@ -15,14 +15,15 @@ import clast
 store = clast.run({
     "name": "example",
     "scene": "disc-explosion",
-    "set": {"body.diameter": "8 cm", "charge.energy": "2 kJ/m", "stop.end_time": "1 ms"},
+    "set": {"body.diameter": "8 cm", "charge.energy": "2 kJ/m"},
     "vary": {"threshold.strain": ["2 %", "5 %"], "threshold.angle": ["2 deg", "6 deg"]},
     "seeds": {"per_point": 4},
     "store": "example.db",
 })
 
 # %% [markdown]
-# One row for each point. With pandas `points` is a frame; here the rows are made to dicts, so that both work.
+# One row for each point. With pandas `points` is a frame; here the rows are made to dicts, so that both work. A `!` marks a
+# mean of runs of which some are in doubt, as in the tables of clast (`clast explain conditions`).
 
 # %%
 points = store.points()
@@ -31,7 +32,8 @@ if hasattr(points, "to_dict"):
 for point in points:
     print(f"strain {point['threshold_strain']:.2f}  angle {math.degrees(point['threshold_angle']):.0f} deg  "
           f"M_1/M {point['largest_fraction_mean']:.3f} ({point['largest_fraction_low95']:.3f} to "
-          f"{point['largest_fraction_high95']:.3f})  (n = {point['n']})")
+          f"{point['largest_fraction_high95']:.3f})  (n = {point['n']})"
+          + ("  !" if point["doubtful"] else ""))
 
 # %% [markdown]
 # All fragment masses of one run, and the body at its end.

@@ -383,10 +383,21 @@ status picture_map(const struct picture_page *page, const struct picture_words *
   OWNED const struct picture_tile **places = NULL;
   TRY(memory_array(&places, MOST_TILES, sizeof *places, "the map", error));
   map.tile = places;
-  for (size_t i = 0; i < count; i++)
+  size_t told = 0;
+  for (size_t i = 0; i < count; i++) {
+    told += isfinite(tiles[i].value);
     map.tile[place(&map.y, tiles[i].y) * map.columns + tiles[i].panel * (map.x.count + 1) +
              place(&map.x, tiles[i].x)] = &tiles[i];
-  return draw_map(page, words, quantity, &map, count, tiles, panel, error);
+  }
+  OWNED char *caption = NULL;
+  struct picture_words all = *words;
+  if (words->caption && told < map.panels * map.x.count * map.y.count &&
+      !strstr(words->caption, "\xc3\x97:")) { /* exponents have their reasons */
+    if (asprintf(&caption, "\xc3\x97: no usable run. %s", words->caption) < 0)
+      return status_fail(error, STATUS_MEMORY, "no memory for the map");
+    all.caption = caption;
+  }
+  return draw_map(page, &all, quantity, &map, count, tiles, panel, error);
 }
 
 /* ---- log-log spectra with error bars or bands, and fitted lines ---- */

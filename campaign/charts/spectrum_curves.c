@@ -190,9 +190,8 @@ static status write_caption(struct store *store, const struct curves *curves, ch
     text_append(caption, CAPTION, ". Thin lines: single runs");
   if (lines)
     text_append(caption, CAPTION,
-                choice->cumulative
-                    ? ". Lines: the law below the largest fragment of each run, and this fragment itself"
-                    : ". Lines leave out the largest fragment of each run, marks have it: they lie higher");
+                choice->cumulative ? ". Lines: the law below the largest fragment of each run, and this fragment itself"
+                                   : ". Lines leave out the largest fragment of each run, marks have it");
   text_append(caption, CAPTION, "%s", untold);
   charts_doubts(store, &curves->doubts, caption, CAPTION);
   return STATUS_OK;

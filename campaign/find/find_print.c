@@ -188,9 +188,9 @@ static status make_bins(const struct find *find, struct bin *bins, size_t *count
   return STATUS_OK;
 }
 
-/* Does the interval of the row's mean hold the level? Of a share no row has one. */
+/* May the row's mean lie at the level? Of a share no row has an interval, and a weak one tells nothing. */
 static bool may_cross(const struct find *find, const struct bin *bin) {
-  return !isnan(find->share) || (bin->mean.low <= find->level && find->level <= bin->mean.high);
+  return !isnan(find->share) || bin->mean.weak || (bin->mean.low <= find->level && find->level <= bin->mean.high);
 }
 
 /* An interval that the bracket cuts: the input may go farther, and the crossing be there. Not where the rows of the

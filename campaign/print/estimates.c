@@ -231,7 +231,7 @@ static void print_legend(const struct printing *printing, FILE *out) {
                 "`clast explain WORD` tells of beta, ML, LSQ, window%s",
                 seen->weak || *seen->open ? ", weak" : "");
   if (*seen->open)
-    text_append(text, sizeof text, ". beta 1.6~: no interval, since %s", seen->open);
+    text_append(text, sizeof text, ". beta with ~: no interval, since %s", seen->open);
   if (*seen->untold)
     text_append(text, sizeof text, ". beta -: %s", seen->untold);
   if (seen->same)

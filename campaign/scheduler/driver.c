@@ -620,6 +620,7 @@ static void tick(void *context, int running, bool last) {
       .mean = mean,
       .reached = widest ? widest->reached * driver->campaign->until_scale : 0,
       .point = widest && points > 1 ? widest->id : 0,
+      .least = campaign_replicates_least(driver->campaign),
       .unit = driver->campaign->until_unit,
       .asked = driver->campaign->until_half_width * driver->campaign->until_scale,
       .doubtful = summary->runs_doubtful > 0,

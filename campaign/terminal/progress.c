@@ -83,9 +83,12 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
   char point[32] = "";
   if (state->point)
     snprintf(point, sizeof point, " at point %lld", (long long)state->point);
+  char least[48] = "";
+  if (state->reached <= state->asked)
+    snprintf(least, sizeof least, " of at least %lld runs", (long long)state->least);
   if (state->reached > 0)
-    snprintf(rule, sizeof rule, ", the rule's interval%s \xc2\xb1 %.2g%s (asked %.2g%s)", point, state->reached, unit,
-             state->asked, unit);
+    snprintf(rule, sizeof rule, ", the rule's interval%s \xc2\xb1 %.2g%s (asked %.2g%s%s)", point, state->reached, unit,
+             state->asked, unit, least);
   snprintf(buffer, size, "%lld of %s%lld runs%s%s, %d running%s%s%s%s", (long long)state->done,
            state->total_is_minimum ? "at least " : "", (long long)state->total, state->part ? " of this round" : "",
            failed, (int)state->running, rate, time, mean, rule);

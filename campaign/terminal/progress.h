@@ -18,6 +18,7 @@ struct progress_state {
   const char *quantity;       /* the main quantity's name */
   struct sample_summary mean; /* of `quantity` over the runs so far; without an interval for runs of several points */
   double reached, asked; /* half width of the stopping rule's interval, the widest of the open points; 0: no rule */
+  int64_t least;         /* runs that the rule asks for, however narrow its interval */
   int64_t point;         /* the point of that interval; 0: the only one */
   const char *unit;      /* of both, with a blank before it; NULL: none */
   bool doubtful;         /* some of these runs are in doubt: "!" behind the mean */

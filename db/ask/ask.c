@@ -271,6 +271,9 @@ struct answer ask_campaign_values(struct store *store, struct error *error) {
 
 /* ---- columns ---- */
 
+/* SQL: the unit for people of a row of table axis. */
+#define WRITTEN_UNIT "ifnull(written_unit, iif(unit = 'rad', 'deg', NULL))"
+
 /* Reads a column from a row of name, SI unit and written unit, of which the last two may be missing. */
 static void read_column(const struct answer *answer, struct ask_column *column) {
   *column = (struct ask_column){.factor = 1};
@@ -319,7 +322,7 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
       "SELECT column_name, unit, %s, path, place >= 2e18 FROM (SELECT *, ifnull((SELECT min(iif(%s, 2e18, 0) + "
       "campaign_id * 1000 + key) FROM campaign, json_each(iif(json_valid(plan), plan, '{}'), '$.axes') AS j WHERE "
       "j.value = axis.path), 1e18) AS place FROM axis%s) ORDER BY %spath",
-      written ? "written_unit" : "NULL", CAMPAIGN_IS_ROUND,
+      written ? WRITTEN_UNIT : "NULL", CAMPAIGN_IS_ROUND,
       written ? " UNION ALL SELECT 'scene', 'scene', NULL, NULL, '', 1.5e18 WHERE " STORE_HAS_SCENES : "",
       written ? "place, " : "");
   for (*count = 0; *count < most && answer_next(&answer); ++*count) {
@@ -339,7 +342,7 @@ status ask_columns_axes(struct store *store, bool written, size_t most, struct a
 
 status ask_columns_written(struct store *store, const char *column, struct ask_column *out, struct error *error) {
   ANSWER answer = answer_to(store, error,
-                            "SELECT column_name, unit, written_unit FROM main.axis WHERE column_name = %Q", column);
+                            "SELECT column_name, unit, " WRITTEN_UNIT " FROM main.axis WHERE column_name = %Q", column);
   *out = (struct ask_column){.factor = 1};
   snprintf(out->name, sizeof out->name, "%s", column);
   if (!answer_next(&answer) && answer_status(&answer) == STATUS_OK)
@@ -694,21 +697,21 @@ status ask_points_label(struct store *store, struct store *units, int64_t point_
                         struct error *error) {
   snprintf(text, size, "point %lld", (long long)point_id);
   ANSWER
-  answer =
-      answer_to(store, error,
-                "WITH mine AS (SELECT *, replace(name, rtrim(name, replace(name, '.', '')), '') AS word FROM (SELECT "
-                "iif(path LIKE '%%.name', substr(path, 1, length(path) - 5), path) AS name, path, value, unit, "
-                "written_unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld)) "
-                "SELECT name, value, unit, written_unit, (SELECT count(*) FROM mine o WHERE o.word = m.word) = 1 "
-                "FROM mine m ORDER BY path DESC",
-                (long long)point_id);
+  answer = answer_to(
+      store, error,
+      "WITH mine AS (SELECT *, replace(name, rtrim(name, replace(name, '.', '')), '') AS word FROM (SELECT "
+      "iif(path LIKE '%%.name', substr(path, 1, length(path) - 5), path) AS name, path, value, unit, " WRITTEN_UNIT
+      " AS written_unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld)) "
+      "SELECT name, value, unit, written_unit, (SELECT count(*) FROM mine o WHERE o.word = m.word) = 1 "
+      "FROM mine m ORDER BY path DESC",
+      (long long)point_id);
   for (size_t used = 0; answer_next(&answer);) {
     const char *path = answer_text(&answer, 0), *word = answer_integer(&answer, 4) ? strrchr(path, '.') : NULL;
     struct ask_column column = {.factor = 1};
     snprintf(column.unit, sizeof column.unit, "%s", answer_text(&answer, 2));
     ANSWER other = {.code = STATUS_OK};
     if (units != store)
-      other = answer_to(units, error, "SELECT written_unit FROM main.axis WHERE path = %Q", path);
+      other = answer_to(units, error, "SELECT " WRITTEN_UNIT " FROM main.axis WHERE path = %Q", path);
     const struct answer *written = units != store && answer_next(&other) ? &other : &answer;
     const size_t place = written == &other ? 0 : 3;
     if (answer_value(written, place).kind == QUERY_TEXT)

@@ -115,6 +115,13 @@ prints "kg/m"
 # An interval that the bracket cuts is told.
 expect 0 "$clast" find disc.yaml --level 0.5 --share 0.5 --from 2.5% --to 6% --max-runs 28
 tr '\n' ' ' <out | grep -qF "The interval ends where the bracket does, and the crossing may be beyond it: a lower --from tells." || fail "the cut interval: $(cat out)"
+# So at both ends, where a row's interval is weak. An angle that no campaign varies has its degrees.
+sed 's/^vary.*/vary: {threshold.strain: [2 %, 5 %]}/; s/^set.*/set: {body.diameter: 8 cm, charge.energy: 2 kJ\/m}/' disc.yaml >weak.yaml
+expect 0 "$clast" find weak.yaml --set threshold.angle='6 deg' --level 0.3 --within 0.1 --store weak.db --quiet
+tr '\n' ' ' <out | grep -qF "beyond it: a lower --from and a higher --to tell." || fail "both ends: $(cat out)"
+expect 0 "$clast" find weak.yaml --set threshold.strain='4 %' --input threshold.angle --from '2 deg' --to '6 deg' --level 0.3 --max-runs 20 --store angle.db --quiet
+expect 0 "$clast" stats angle.db --by angle
+prints "angle [deg]"
 # Where the runs at an end lie on the other side, there may be another crossing, and not beyond the bracket.
 sed 's/^vary.*/vary: {charge.energy: [0.3 kJ\/m, 30 kJ\/m]}/; s/^set.*/set: {body.diameter: 10 cm, threshold.angle: 4 deg}/; s/disc.db/peak.db/' disc.yaml >peak.yaml
 expect 0 "$clast" find peak.yaml -Q second_fraction --level '5 %' --max-runs 20 --quiet
@@ -228,4 +235,4 @@ printf '%s\n' 'name: ex log' 'scene: disc-explosion' 'set: {body.diameter: 7 cm}
 expect 0 "$clast" find exlog.yaml -Q second_fraction --level 0.12 --within '15 %' --max-runs 100 --quiet --picture e.svg --keep-script
 grep -q '^10 0\.' e.dat && ! grep -q '^NaN [0-9]' e.dat || fail "the end of the bracket is not drawn: $(cat e.dat)"
 ok "a picture has every place"
-done_after 67
+done_after 70

@@ -169,6 +169,8 @@ store: three.db
 YAML
 expect 0 "$clast" run three.yaml -j 2 --quiet
 expect 0 "$clast" map three.db three.svg -x strain -y angle --by energy --keep-script
+caption three.gp >caption
+grep -q "×: no usable run" caption || fail "a cross that nothing explains"
 expect 0 "$clast" stats three.db --by strain,angle,energy --json
 python - <<'PY'
 import json, re

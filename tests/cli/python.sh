@@ -7,6 +7,7 @@ export PYTHONPATH=$source/python CLAST=$clast PYTHONDONTWRITEBYTECODE=1
 expect 0 python "$source/python/example.py"
 prints "strain 0.05  angle 6 deg  M_1/M"
 prints "(n = 4)"
+same "$(grep -c '^strain.*!$' out)" "$(number example.db 'select count(*) from points where doubtful')" "means in doubt are marked"
 prints "over threshold_angle (2) x threshold_strain (2) in ['rad', '1']"
 expect 0 "$clast" export example.db runs.csv --per run
 expect 0 "$clast" export example.db points.jsonl --per point --jsonl
@@ -159,7 +160,7 @@ if [ -n "${CLAST_FULL:-}" ]; then
   expect 0 python -m pip install --no-index --no-build-isolation --target installed ./tree
   (cd / && PYTHONPATH=$work/installed python -c "import clast; print(clast.__file__)") | grep -qF "$work/installed" || fail "not installed"
   ok "pip installs it"
-  done_after 13
+  done_after 14
 else
-  done_after 11
+  done_after 12
 fi

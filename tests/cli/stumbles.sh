@@ -146,7 +146,7 @@ YAML
 expect 0 "$clast" run open.yaml -j 2 --quiet
 grep -q ' [0-9.]*~$' out || fail "no exponent without an interval"
 expect 0 "$clast" estimates open.db
-says "beta 1.6~: no interval, since without one of the runs a bin is empty"
+says "beta with ~: no interval, since without one of the runs a bin is empty"
 grep -q 'weak, too few' err && fail "a share is called weak that is not"
 expect 0 "$clast" explain weak
 prints "a bin is empty (LSQ)"

@@ -27,16 +27,19 @@ TEST(durations) {
 }
 
 TEST(a_rule_tells_how_narrow_its_interval_is) {
-  char text[512] = "";
+  char text[1024] = "";
   FILE *out = fmemopen(text, sizeof text, "w");
-  struct progress *progress = progress_create(out, PROGRESS_BAR, false, 200);
+  struct progress *progress = progress_create(out, PROGRESS_BAR, false, 240);
   struct progress_state now = of(10);
   now.reached = 5.84, now.asked = 5, now.unit = " %";
   progress_update(progress, &now, 0, false);
   now.reached = 2.6e5, now.asked = 2e5, now.unit = " Pa", now.point = 2;
-  progress_update(progress, &now, 100, true);
+  progress_update(progress, &now, 100, false);
+  now.reached = 1e5, now.least = 50;
+  progress_update(progress, &now, 200, true);
   progress_free(progress);
   fclose(out);
+  assert_non_null(strstr(text, " Pa (asked 2e+05 Pa of at least 50 runs)"));
   assert_non_null(strstr(text, ", the rule's interval ± 5.8 % (asked 5 %)"));
   assert_non_null(strstr(text, ", the rule's interval at point 2 ± 2.6e+05 Pa (asked 2e+05 Pa)"));
 }
