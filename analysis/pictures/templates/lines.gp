@@ -27,8 +27,8 @@ if (places > 0) {
   set yrange [*<0:0<*]
   set offsets 0, 0, graph 0.05, 0
   plot for [i = 1:series] data index i - 1 using (beside($1, i)):2 with boxes lt i dt 1 fs solid 0.4 title label[i], \
-       for [i = 1:series] data index i - 1 using (beside($1, i)):2:5:6 with yerrorbars lc 'black' dt 1 lw 0.6 ps 0 notitle, \
-       for [i = 1:series] data index i - 1 using (beside($1, i)):2:3:4 with yerrorbars lc 'black' dt 1 ps 0 notitle, \
+       for [i = 1:series] data index i - 1 using (beside($1, i)):($5 == $5 ? $2 : NaN):5:6 with yerrorbars lc 'black' dt 1 lw 0.6 ps 0 notitle, \
+       for [i = 1:series] data index i - 1 using (beside($1, i)):($3 == $3 ? $2 : NaN):3:4 with yerrorbars lc 'black' dt 1 ps 0 notitle, \
        for [i = 1:series] data index i - 1 using (beside($1, i)):($7 > 0 ? $2 : NaN):('!') with labels offset 1.1, 0.5 notitle
 } else {
 plot for [i = 1:series] data index i - 1 using 1:(band[i] > 0 ? $3 : NaN):4 with filledcurves lt i fs transparent solid 0.2 noborder notitle, \
