@@ -187,27 +187,19 @@ static struct snapshot_file *begin(void) {
   return f;
 }
 
-static status check_begun(struct snapshot_file *f, struct snapshot_file **out, struct error *error) {
-  *out = f->failed ? NULL : f;
-  if (*out)
-    return STATUS_OK;
-  const bool memory = f->memory;
-  snapshot_file_close(f);
-  return status_fail(error, memory ? STATUS_MEMORY : STATUS_INTERNAL, "cannot begin a fields file%s",
-                     memory ? ": no memory" : "");
-}
-
-status snapshot_file_open_plain(struct snapshot_file **out, struct error *error) {
-  return check_begun(begin(), out, error);
-}
-
 status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const void *inputs,
                           const struct outcome *outcome, const void *results, struct snapshot_file **out,
                           struct error *error) {
   struct snapshot_file *f = begin();
   if (!f->failed)
     head(f, engine, seed, inputs, outcome->time);
-  TRY(check_begun(f, out, error));
+  *out = f->failed ? NULL : f;
+  if (f->failed) {
+    const bool memory = f->memory;
+    snapshot_file_close(f);
+    return status_fail(error, memory ? STATUS_MEMORY : STATUS_INTERNAL, "cannot begin a fields file%s",
+                       memory ? ": no memory" : "");
+  }
   add_table(f, "inputs", engine->inputs, inputs);
   add_table(f, "outcome", &outcome_table, outcome);
   add_table(f, "results", engine->results, results);

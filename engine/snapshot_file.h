@@ -20,8 +20,6 @@ struct snapshot_file; /* opaque */
 status snapshot_file_open(const struct engine_kind *engine, uint64_t seed, const void *inputs,
                           const struct outcome *outcome, const void *results, struct snapshot_file **out,
                           struct error *error);
-/* The same for a file in the layout of another program: nothing is in it yet. */
-status snapshot_file_open_plain(struct snapshot_file **out, struct error *error);
 void snapshot_file_close(struct snapshot_file *file); /* NULL is fine */
 /* STATUS_IO with the system's reason: no file is left behind. STATUS_INTERNAL, STATUS_MEMORY. */
 status snapshot_file_save(struct snapshot_file *file, const char *path, struct error *error);

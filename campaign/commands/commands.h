@@ -49,7 +49,6 @@
   ENTRY(map)                                                                                                           \
   ENTRY(extremes)                                                                                                      \
   ENTRY(picture)                                                                                                       \
-  ENTRY(handoff)                                                                                                       \
   ENTRY(report)                                                                                                        \
   /* the store */ ENTRY(exclude)                                                                                       \
   ENTRY(check)                                                                                                         \
