@@ -75,26 +75,6 @@ static char find_separator(const char *at) {
   return tab ? '\t' : ',';
 }
 
-/* Of a tabular file of Dakota: one tab for the blanks between two cells, none at the ends of a line. */
-static bool is_tabular(const char *at) {
-  at += *at == '%';
-  return strncmp(at, "eval_id", 7) == 0 && blank(at[7]);
-}
-static void tabulate(char *at) {
-  char *to = at;
-  for (bool begins = true; *at; begins = *at++ == '\n') {
-    char *const from = at;
-    while (blank(*at))
-      at++;
-    if (at > from && !begins && !strchr("\r\n", *at))
-      *to++ = '\t';
-    if (!*at)
-      break;
-    *to++ = *at;
-  }
-  *to = '\0';
-}
-
 static bool ends_line(const char *at) {
   return *at == '\0' || *at == '\n' || (*at == '\r' && (at[1] == '\n' || at[1] == '\0'));
 }
@@ -195,8 +175,6 @@ enum csv_item csv_next(struct csv *csv) {
   while (*csv->at) {
     char *text = csv->at + strspn(csv->at, " \t");
     csv->line = csv->next;
-    if (csv->count == 0 && is_tabular(text))
-      tabulate(csv->at), text = csv->at;
     if (text[*text == '"'] == '#' && !is_error_value(text + (*text == '"')))
       return take_remark(csv, text);
     if (csv->line == 1 && strncmp(text, "sep=", 4) == 0 && text[4] && strchr(";,\t", text[4]) && ends_line(text + 5)) {

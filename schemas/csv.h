@@ -6,10 +6,7 @@
  * Cells may be in double quotes, with "" for a quote; blanks around a cell are no part of it. Lines end with LF or
  * CRLF. Empty records are skipped. A line that begins with # is a remark, but not with #N/A. A NUL byte is refused. The
  * apostrophe before =, +, - or @, by which a writer keeps spreadsheets from taking a text as a formula, is no part of
- * the cell.
- *
- * A first line that begins with eval_id or %eval_id is that of a tabular file of Dakota in its annotated form: its
- * cells are separated by blanks. */
+ * the cell. */
 #pragma once
 
 #include <stdbool.h>

@@ -7,7 +7,7 @@
 
 struct options {
   const char *per, *license, *author;
-  bool csv, lines, bits, crate, dakota;
+  bool csv, lines, bits, crate;
 };
 
 /* Does the name promise a table? */
@@ -29,13 +29,13 @@ static status check(const struct command_line *line, struct error *error) {
     bool broken;
     const char *text;
   } rules[] = {
-      {options->csv + options->lines + options->bits + options->crate + options->dakota > 1,
-       "--csv, --jsonl, --bits, --crate and --dakota exclude each other"},
+      {options->csv + options->lines + options->bits + options->crate > 1,
+       "--csv, --jsonl, --bits and --crate exclude each other"},
       {options->per && other, "--per excludes --bits and --crate"},
       {(choice->point || choice->campaign || choice->where) && !options->per && !options->csv,
        "--point, --campaign and --where belong to --per and --csv: other forms have the whole store"},
       {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
-      {(options->lines || options->dakota) && !options->per, "--jsonl and --dakota need --per run or --per point"},
+      {options->lines && !options->per, "--jsonl needs --per run or --per point"},
       {!options->per && !options->csv && !other && line->count > 1 && is_table(line->arguments[1]),
        "without an option the target is a store. For rows give --per run or --per point (--jsonl for JSON), for a "
        "folder "
@@ -60,20 +60,15 @@ static status ask(struct store *store, const struct command_line *line, struct e
     TRY(ask_choose(store, &(struct ask_choice){0}, error)); /* the whole store */
   if (options->per)
     TRY(export_files_write(store, target, strcmp(options->per, "run") == 0 ? "runs" : "points",
-                           options->dakota  ? EXPORT_TABULAR
-                           : options->lines ? EXPORT_JSON_LINES
-                                            : EXPORT_CSV,
-                           error));
+                           options->lines ? TABLE_JSON_LINES : TABLE_CSV, error));
   else if (options->csv)
     TRY(export_files_folder(store, target, error));
   else if (options->crate)
     TRY(export_crate(store, line->arguments[0], &crate, error));
   else if (options->bits)
-    TRY(export_files_write(store, target, NULL, EXPORT_CSV, error));
+    TRY(export_files_write(store, target, NULL, TABLE_CSV, error));
   else
     TRY(store_export(store, target, error));
-  if (options->dakota) /* its files have no place for marks */
-    TRY(quantity_tell_doubts(store, "main", error));
   if (target)
     fprintf(stderr, "%s written\n", target);
   return STATUS_OK;
@@ -82,7 +77,6 @@ static status ask(struct store *store, const struct command_line *line, struct e
 static const struct option_row option_rows[] = {
     OPTION_ROW_TEXT("per", 0, "run|point", struct options, per, NULL),
     OPTION_ROW_FLAG("jsonl", 0, struct options, lines),
-    OPTION_ROW_FLAG("dakota", 0, struct options, dakota),
     OPTION_ROW_FLAG("csv", 0, struct options, csv),
     OPTION_ROW_FLAG("bits", 0, struct options, bits),
     OPTION_ROW_FLAG("crate", 0, struct options, crate),

@@ -22,9 +22,7 @@ struct reading {
   struct csv csv;
   char folder[LIMITS_PATH];     /* of the file of points: files that its cells name are looked for there */
   const char *units[CSV_CELLS]; /* units of the columns; "" for none */
-  size_t before;   /* columns before the inputs, of Dakota: eval_id, interface. Its responses stand behind the inputs */
-  bool tabular;    /* a file of Dakota */
-  size_t capacity; /* capacity of every axis and of the lines */
+  size_t capacity;              /* capacity of every axis and of the lines */
   int reports;
 };
 
@@ -64,13 +62,6 @@ static bool open_points(struct reading *r, const char *folder) {
   return false;
 }
 
-/* The input of a column. Dakota's files may have its path with underscores, as `clast export` writes it. */
-static const struct field *input_of(const struct reading *r, const char *name, struct error *error) {
-  const struct scene *scene = r->campaign->scene;
-  const struct field *row = field_find_in(scene->kind->inputs, name, scene->inputs, error);
-  return row || !r->tabular ? row : field_of_column(scene->kind->inputs, name);
-}
-
 static bool add_column(struct reading *r, size_t column) {
   struct campaign *campaign = r->campaign;
   struct error error = {0};
@@ -80,7 +71,7 @@ static bool add_column(struct reading *r, size_t column) {
                  "column %zu has no name; write the file without row names (R: row.names = FALSE, pandas: index=False)",
                  column + 1);
   const char *unit = r->units[column] = csv_take_unit(name);
-  const struct field *row = input_of(r, name, &error);
+  const struct field *row = field_find_in(campaign->scene->kind->inputs, name, campaign->scene->inputs, &error);
   if (!row)
     return wrong(r, "%s", error.message);
   if (row->flags & FIELD_FILE)
@@ -96,32 +87,14 @@ static bool add_column(struct reading *r, size_t column) {
   return true;
 }
 
-/* Dakota's columns: where the inputs begin, and how many there are. A name that resembles an input's is taken as one,
- * so that it is refused. */
-static bool find_inputs(struct reading *r, size_t *end) {
-  const struct csv *csv = &r->csv;
-  const struct field_table *inputs = r->campaign->scene->kind->inputs;
-  const char *first = csv->cells[0].text;
-  struct error error = {0};
-  r->tabular = strcmp(first + (*first == '%'), "eval_id") == 0;
-  r->before = (size_t)r->tabular + (r->tabular && csv->count > 1 && strcmp(csv->cells[1].text, "interface") == 0);
-  *end = csv->count;
-  while (r->tabular && *end > r->before && !input_of(r, csv->cells[*end - 1].text, &error) &&
-         !field_nearest(inputs, csv->cells[*end - 1].text, (char[FIELD_NEAR_SIZE]){0}))
-    --*end;
-  return *end > r->before ||
-         wrong(r, "no column is an input: rename the variables to paths of inputs, such as %s", inputs->rows[0].path);
-}
-
 static bool read_header(struct reading *r) {
-  size_t end;
-  bool good = find_inputs(r, &end);
+  bool good = true;
   r->campaign->axes = calloc(r->csv.count, sizeof *r->campaign->axes);
   if (!r->campaign->axes) {
     document_report_memory(r->node, "design.file");
     return false;
   }
-  for (size_t column = r->before; column < end && r->reports < MOST_REPORTS; column++)
+  for (size_t column = 0; column < r->csv.count && r->reports < MOST_REPORTS; column++)
     good &= add_column(r, column);
   return good;
 }
@@ -139,7 +112,7 @@ static bool in_folder(struct reading *r, const struct field *row, struct field_v
 
 /* A bare number gets the column's unit. */
 static bool read_cell(struct reading *r, size_t column) {
-  struct design_axis *axis = &r->campaign->axes[column - r->before];
+  struct design_axis *axis = &r->campaign->axes[column];
   struct csv_cell *cell = &r->csv.cells[column];
   struct error error = {0};
   char text[2 * CELL];
@@ -150,14 +123,12 @@ static bool read_cell(struct reading *r, size_t column) {
     return wrong(r, "%s: a cell of more than %d bytes", axis->row->path, CELL - 1);
   if (number && !csv_number(&r->csv, cell))
     return wrong(r, "%s: %s", axis->row->path, r->csv.wrong);
-  const bool bare = unit_is_bare(cell->text);
-  const char *unit = bare ? r->units[column] : "";
-  /* [1]: fractions, for inputs that require percent. Dakota knows no units: SI */
-  const bool plain = strcmp(unit, "1") == 0 || (bare && r->tabular && !*unit);
+  const char *unit = unit_is_bare(cell->text) ? r->units[column] : "";
   snprintf(text, sizeof text, "%s%s%.200s", cell->text, *unit ? " " : "", unit);
   struct field_value *value = &axis->levels[r->campaign->design.points];
-  const status code = plain ? field_parse_si(axis->row, cell->text, value, &error)
-                            : field_parse(axis->row, text, value, &error);
+  const status code = strcmp(unit, "1") == 0 /* fractions, for inputs that require percent */
+                          ? field_parse_si(axis->row, cell->text, value, &error)
+                          : field_parse(axis->row, text, value, &error);
   return code == STATUS_OK ? in_folder(r, axis->row, value) : wrong(r, "%s", error.message);
 }
 
@@ -185,7 +156,7 @@ static void read_point(struct reading *r) {
     return;
   }
   for (size_t a = 0; a < campaign->axis_count; a++)
-    good &= read_cell(r, r->before + a);
+    good &= read_cell(r, a);
   if (!good)
     return;
   campaign->point_lines[campaign->design.points++] = r->csv.line;

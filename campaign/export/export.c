@@ -26,67 +26,13 @@ static const char *const exported[][2] = {
 };
 enum { TABLES = sizeof exported / sizeof exported[0] };
 
-/* Is this column of a view written for Dakota? */
-static bool is_tabular(const char *name, const struct ask_column *axis, size_t axes, bool responses, bool means) {
-  for (size_t a = 0; a < axes; a++)
-    if (strcmp(axis[a].name, name) == 0)
-      return !responses;
-  for (size_t i = 0; responses && i < outcome_table.count; i++) {
-    char column[FIELD_TEXT_SIZE];
-    field_column_name(outcome_table.rows[i].path, column, sizeof column);
-    const size_t length = strlen(column);
-    if (outcome_table.rows[i].main_rank && strncmp(name, column, length) == 0 &&
-        strcmp(name + length, means ? "_mean" : "") == 0)
-      return true;
-  }
-  return false;
-}
-
-static void write_tabular(const struct query_value *value, FILE *out) {
-  if (value->kind == QUERY_TEXT)
-    fprintf(out, " %s", value->text);
-  else if (value->kind == QUERY_NULL)
-    fputs(" nan", out);
-  else
-    fprintf(out, " %.17g", value->real);
-}
-
-/* As a tabular file of Dakota, annotated. */
-static status write_all_tabular(struct store *store, const char *view, FILE *out, struct error *error) {
-  const bool means = strcmp(view, "points") == 0;
-  OWNED struct ask_column *axis = memory_small(LIMITS_AXES_OF_TABLE, sizeof *axis);
-  size_t axes = 0;
-  TRY(ask_columns_axes(store, false, LIMITS_AXES_OF_TABLE, axis, &axes, error));
-  ANSWER rows = ask_columns_view(store, view, error);
-  fputs("%eval_id interface", out);
-  for (bool head = true; head || answer_next(&rows); head = false) {
-    for (size_t c = 0; !head && c < answer_count(&rows); c++)
-      if (strcmp(answer_name(&rows, c), means ? "point_id" : "run_id") == 0)
-        fprintf(out, "%" PRId64 " NO_ID", answer_integer(&rows, c));
-    for (int responses = 0; responses < 2; responses++)
-      for (size_t c = 0; c < answer_count(&rows); c++) {
-        const char *name = answer_name(&rows, c);
-        if (!is_tabular(name, axis, axes, responses, means))
-          continue;
-        const struct query_value value = head ? (struct query_value){.kind = QUERY_TEXT, .text = name}
-                                              : answer_value(&rows, c);
-        write_tabular(&value, out);
-      }
-    fputc('\n', out);
-  }
-  return answer_end(&rows);
-}
-
-static status write_rows(struct store *store, const char *view, enum export_format format, FILE *out,
+static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
                          struct error *error) {
-  if (format == EXPORT_TABULAR)
-    return write_all_tabular(store, view, out, error);
-  return view ? table_answer(ask_columns_view(store, view, error), false,
-                             format == EXPORT_CSV ? TABLE_CSV : TABLE_JSON_LINES, out)
+  return view ? table_answer(ask_columns_view(store, view, error), false, format, out)
               : store_export_digests(store, out, error);
 }
 
-status export_files_write(struct store *store, const char *path, const char *view, enum export_format format,
+status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error) {
   struct file_output file;
   if (!path)
@@ -110,7 +56,7 @@ status export_files_folder(struct store *store, const char *folder, struct error
     TRY(file_may_replace(path[i], "table", error));
   }
   for (size_t i = 0; i < TABLES; i++)
-    TRY(export_files_write(store, path[i], exported[i][0], EXPORT_CSV, error));
+    TRY(export_files_write(store, path[i], exported[i][0], TABLE_CSV, error));
   return STATUS_OK;
 }
 

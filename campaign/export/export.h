@@ -4,14 +4,10 @@
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"
 
-/* EXPORT_TABULAR: the varied inputs (SI units) and the main results of each run, or their means of each point (view
- * "points"), as a tabular file of Dakota, annotated: eval_id is the number of the run or point. */
-enum export_format { EXPORT_CSV, EXPORT_JSON_LINES, EXPORT_TABULAR };
-
 /* Writes the rows of a view (runs, points, ...; NULL: the bits) into a file; path NULL: to standard output. The file is
  * written under a temporary name and renamed: a file with its final name is complete. A pipe or a device (/dev/stdout)
- * is written directly. */
-status export_files_write(struct store *store, const char *path, const char *view, enum export_format format,
+ * is written directly. format: TABLE_CSV or TABLE_JSON_LINES. */
+status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error);
 
 /* A CSV file of each view, and column_doc.csv, in the folder, which is made. */
@@ -29,10 +25,3 @@ struct export_crate_options {
  * are explained in column_doc.csv. STATUS_IO: the folder cannot be written, or is not empty. */
 status export_crate(struct store *store, const char *store_path, const struct export_crate_options *options,
                     struct error *error);
-
-/* ---- one run for other programs ---- */
-
-/* Reads a fields file and writes, by the ending of `target`: fragments as CSV (.csv) or as the lines that REBOUND reads
- * (.txt), particles as the HDF5 of miluphcuda, which OpenSPH reads, too (.h5). STATUS_USAGE: another ending.
- * STATUS_CONTENT: the file has no such bodies, or is damaged. STATUS_IO, STATUS_MISSING, STATUS_MEMORY. */
-status export_run(const char *fields, const char *target, struct error *error);

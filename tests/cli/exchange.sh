@@ -104,26 +104,6 @@ expect 0 "$clast" run in/design.yaml --store european.db -j 2 --quiet
   fail "points with decimal commas are not those of the grid"
 ok "semicolons and decimal commas mean the same points"
 
-# a tabular file of Dakota, written and read back: the same runs, whatever the responses behind the inputs
-cp grid.csv kept.csv
-expect 0 "$clast" export rows.db in/points.csv --per point --dakota
-same "$(head -1 in/points.csv)" "%eval_id interface threshold_angle threshold_strain $(echo {largest,second}_fraction_mean fragment_count_mean dust_fraction_mean mean_fragment_mass_mean)" "columns for Dakota"
-expect 0 "$clast" run in/design.yaml --store dakota.db -j 2 --quiet
-"$clast" query dakota.db "select identity, largest_fraction from runs order by 1" --csv | cmp -s - kept.csv ||
-  fail "points of Dakota's file are not those of the grid"
-printf 'eval_id   threshold.strain   angle[deg]   response_fn_1\n  1   0.02   2   7e-1\n  2   0.05   2   8e-1\n' >in/points.csv
-expect 0 "$clast" plan in/design.yaml --no-trial
-prints "design    list, 2 points"
-points_say '%%eval_id interface strain angel\n1 NO_ID 0.02 0.1\n' "points.csv:1:" "angle"
-points_say '%%eval_id interface strain f angle\n1 NO_ID 0.02 7 0.1\n' "points.csv:1:" "'f'"
-points_say '%%eval_id interface x1 x2\n1 NO_ID 0.02 7\n' "points.csv:1: no column is an input"
-points_say '%%eval_id interface strain f\n1 NO_ID 0.02\n' "points.csv:2: 3 cells, but the header has 4"
-expect 64 "$clast" export rows.db --dakota
-says "need --per"
-expect 0 "$clast" export rows.db --per run --dakota
-same "$(sed -n '2p' out | cut -d' ' -f1,2)" "1 NO_ID" "a run's number"
-same "$(grep -c . out)" 13 "lines of runs"
-ok "Dakota's tabular files in and out"
 # equal points are one, in the plan as in the run
 printf 'strain [%%];threshold.angle [deg]\n2;2\n5;2\n2,0;2,00\n2 %%;2 deg\n' >in/points.csv
 expect 0 "$clast" plan in/design.yaml --store equal.db --no-trial
@@ -168,4 +148,21 @@ done
 cd ..
 [ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
 ok "blocks of the guide"
-done_after 63
+expect 0 python - <<'PY'
+import clast
+rows = [list(map(float, line.split())) for line in open("guide/rebound.txt")]
+body = clast.open("guide/ball.db").snapshot(1)
+at = "VTKHDF/PointData/"
+inside = [i for i, fragment in enumerate(body[at + "fragment"]) if fragment >= 0]
+velocity = [float(v) for row in body[at + "velocity"] for v in (row if hasattr(row, "__len__") else [row])]
+assert len(rows) == int(body["outcome/fragment_count"][0]) > 100 and all(len(row) == 8 for row in rows)
+for name, theirs in (("mass", sum(row[0] for row in rows)),
+                     ("volume", sum(4 / 3 * 3.141592653589793 * row[1] ** 3 for row in rows))):
+    own = sum(body[at + "mass"][i] / (body[at + "density"][i] if name == "volume" else 1) for i in inside)
+    assert abs(theirs / own - 1) < 1e-12, name
+for axis in range(3):
+    own = [body[at + "mass"][i] * velocity[3 * i + axis] for i in inside]
+    assert abs(sum(row[0] * row[5 + axis] for row in rows) - sum(own)) < 1e-12 * sum(map(abs, own)), axis
+PY
+ok "fragments for REBOUND have mass, volume and momentum of their particles"
+done_after 52

@@ -42,10 +42,6 @@ TEST(cells) {
       {"\ta\t,b\t\n", "|a|,b|/"}, /* a tab among the names is a separator */
       {"a\tb\n\t2\n", "a|b/|2/"},
       {"a;b\n2,5;214\n", "a|b/2,5|214/"},
-      {" %eval_id interface   x1 \t f \n\n1  NO_ID  2.5  3 \r\n2 NO_ID 1e-3\t4", /* by Dakota */
-       "%eval_id|interface|x1|f/1|NO_ID|2.5|3/2|NO_ID|1e-3|4/"},
-      {"eval_id x1 x2\n   1   2   3\n", "eval_id|x1|x2/1|2|3/"},
-      {"eval_id,x1\n1,2\n", "eval_id|x1/1|2/"},
       {"\"a;b\",c\n1,2\n", "a;b|c/1|2/"},              /* not in quotes */
       {"sep=;\r\na;b\r\n2,5;214\r\n", "a|b/2,5|214/"}, /* by Excel */
       {"\xEF\xBB\xBFsep=,\n# a\n\n\"a;b\",c;d\n1,2\n", " a#a;b|c;d/1|2/"},
