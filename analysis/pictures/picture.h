@@ -234,21 +234,6 @@ struct picture_sample {
 status picture_scatter(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const struct picture_sample *sample, struct error *error);
 
-/* Safe, warned and refused runs at a value of an input, or in a range of values. */
-struct picture_margin_tile {
-  char text[32];
-  double runs[3]; /* numbers of safe, warned and refused runs */
-};
-struct picture_margin {
-  const char *heading; /* heading above the row; NULL: none */
-  const char *label;   /* name of the input */
-  size_t count;        /* number of tiles, at least 1 */
-  const struct picture_margin_tile *tile;
-};
-/* Draws a row of tiles per input with cairo. Each tile is divided by the shares of its runs. */
-status picture_margins(const char *path, double width, const char *title, size_t count,
-                       const struct picture_margin *row, struct error *error);
-
 struct picture_tile {
   double x, y, value;
   bool doubtful; /* a "!" behind the value */

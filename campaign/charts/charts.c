@@ -1,4 +1,4 @@
-/* Names of quantities, the page of a chart, and the stability map of a store. */
+/* Names of quantities, and the page of a chart. */
 #include "campaign/charts/charts.h"
 
 #include <inttypes.h>
@@ -110,52 +110,4 @@ void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *t
     if (runs < doubts->doubtful)
       text_append(text, size, " (%" PRId64 " run%s)", runs, text_plural(runs));
   }
-}
-
-/* ---- the stability map of a store ---- */
-
-enum { TILES = 10, MOST_ROWS = 400, NAME = 128 };
-struct row { /* one input of one campaign */
-  char campaign[NAME], path[NAME];
-  size_t count;
-  struct picture_margin_tile tile[TILES];
-};
-
-/* Adds a tile: a value of an input, or a range of values, which its first value stands for. */
-static status add_tile(struct row *rows, size_t *count, const struct answer *runs, struct error *error) {
-  const char *campaign = answer_text(runs, 0), *path = answer_text(runs, 1);
-  struct row *row = *count ? &rows[*count - 1] : NULL;
-  if (!row || strncmp(row->campaign, campaign, NAME - 1) != 0 || strncmp(row->path, path, NAME - 1) != 0) {
-    if (*count == MOST_ROWS)
-      return status_fail(error, STATUS_USAGE, "more than %d varied inputs in one picture", MOST_ROWS);
-    row = &rows[(*count)++];
-    snprintf(row->campaign, sizeof row->campaign, "%s", campaign);
-    snprintf(row->path, sizeof row->path, "%s", path);
-  }
-  struct picture_margin_tile *tile = &row->tile[row->count++];
-  const bool is_range = answer_integer(runs, 2) != 0;
-  if (answer_value(runs, 3).kind == QUERY_TEXT)
-    snprintf(tile->text, sizeof tile->text, "%s%.23s", is_range ? "from " : "", answer_text(runs, 3));
-  else
-    snprintf(tile->text, sizeof tile->text, is_range ? "from %.3g" : "%.8g", answer_real(runs, 3));
-  for (size_t c = 0; c < 3; c++)
-    tile->runs[c] = answer_real(runs, 4 + c);
-  return STATUS_OK;
-}
-
-status charts_extremes(struct store *store, const char *path, double width, struct error *error) {
-  size_t count = 0;
-  OWNED struct row *rows = calloc(MOST_ROWS, sizeof *rows);
-  OWNED struct picture_margin *margin = calloc(MOST_ROWS, sizeof *margin);
-  if (!rows || !margin)
-    return status_fail(error, STATUS_MEMORY, "no memory for the picture");
-  ANSWER runs = ask_campaign_values(store, error);
-  while (answer_next(&runs))
-    TRY(add_tile(rows, &count, &runs, error));
-  TRY(answer_end(&runs));
-  for (size_t k = 0; k < count; k++) {
-    const bool begins = k == 0 || strcmp(rows[k].campaign, rows[k - 1].campaign) != 0;
-    margin[k] = (struct picture_margin){begins ? rows[k].campaign : NULL, rows[k].path, rows[k].count, rows[k].tile};
-  }
-  return picture_margins(path, width, "Safe, warned and refused runs by input (SI units)", count, margin, error);
 }

@@ -117,7 +117,3 @@ void picture_draw_time(double seconds, char text[32]);
 
 /* STATUS_USAGE: options that do not suit the file; also the statuses of analysis/pictures/picture.h. */
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options, struct error *error);
-
-/* The stability map of a store as a picture: how many runs are safe, warned and refused, for each value of each varied
- * input. */
-status charts_extremes(struct store *store, const char *path, double width, struct error *error);

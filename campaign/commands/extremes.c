@@ -1,10 +1,7 @@
 /* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
 #include "campaign/commands/commands.h"
 
-enum { PICTURE_WIDTH = 1200 };
-
 struct options {
-  const char *picture;
   bool why;
 };
 
@@ -17,11 +14,10 @@ static status ask(struct store *store, const struct command_line *line, struct e
     putchar('\n');
   if (both || options->why)
     TRY(table_answer(ask_campaign_reasons(store, error), true, line->format, stdout));
-  return options->picture ? charts_extremes(store, options->picture, PICTURE_WIDTH, error) : STATUS_OK;
+  return STATUS_OK;
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
     OPTION_ROW_FLAG("why", 0, struct options, why),
 };
 

@@ -251,24 +251,6 @@ struct answer ask_campaign_reasons(struct store *store, struct error *error) {
                     error);
 }
 
-struct answer ask_campaign_values(struct store *store, struct error *error) {
-  return ask_judged(
-      store,
-      ", input AS (SELECT campaign_id, path, value, class FROM judged JOIN point_input USING (point_id)"
-      " WHERE path IN (SELECT path FROM axis)),"
-      " varied AS (SELECT campaign_id, path FROM input GROUP BY campaign_id, path"
-      "   HAVING count(DISTINCT value) > 1),"
-      " counts AS (SELECT campaign_id, path, value, sum(class = 'safe') AS safe, sum(class = 'warned') AS warned,"
-      "   sum(class = 'refused') AS refused FROM input JOIN varied USING (campaign_id, path)"
-      "   GROUP BY campaign_id, path, value),"
-      " placed AS (SELECT *, count(*) OVER input AS n, row_number() OVER (input ORDER BY value) - 1 AS place"
-      "   FROM counts WINDOW input AS (PARTITION BY campaign_id, path))"
-      " SELECT name AS campaign, path, n > 10 AS is_range, min(value) AS first, sum(safe) AS safe,"
-      " sum(warned) AS warned, sum(refused) AS refused FROM placed JOIN campaign USING (campaign_id)"
-      " GROUP BY campaign_id, path, place * min(n, 10) / n ORDER BY campaign_id, path, min(place)",
-      error);
-}
-
 /* ---- columns ---- */
 
 /* SQL: the unit for people of a row of table axis. */

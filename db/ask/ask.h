@@ -96,10 +96,6 @@ struct answer ask_campaign_different_inputs(struct store *store, struct error *e
 struct answer ask_campaign_extremes(struct store *store, struct error *error);
 /* A row per campaign and reason, the most frequent first: state or warnings, runs, one message. */
 struct answer ask_campaign_reasons(struct store *store, struct error *error);
-/* A row per value of each varied input, in ascending order within campaign and input; an input with more than ten
- * values has ten ranges of them. Campaign, path, is_range, the (first) value, and the numbers of safe, warned and
- * refused runs. Inputs with only one value are left out. */
-struct answer ask_campaign_values(struct store *store, struct error *error);
 
 /* ---- The conditions that the runs behind a number break (engine/condition.h). ---- */
 

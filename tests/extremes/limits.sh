@@ -43,7 +43,6 @@ expect 0 "$clast" extremes doubt.db --json
 prints '"warned": 3'
 expect 0 "$clast" extremes doubt.db
 prints "step"
-expect 64 "$clast" extremes doubt.db --picture map.bmp
 expect 66 "$clast" extremes nosuch.db
 
 # over its time limit

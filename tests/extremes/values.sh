@@ -44,7 +44,7 @@ def commands(store, out, queries):
     yield from (["stats", store], ["stats", store, "-b", "strain", "-Q", "main", "--csv"])
     yield from (["estimates", store, *form] for form in ([], ["--csv"], ["--json"]))
     yield ["exponents", store, "--draws", "20"]
-    yield from (["scatter", store, *form] for form in ([], ["--split"], ["--csv"], ["--half-width", "0.01", "--json"]))
+    yield from (["scatter", store, *form] for form in ([], ["--csv"], ["--half-width", "0.01", "--json"]))
     yield from (["scatter", store, "-Q", name] for name in ("largest_speed", "fragment_count"))
     yield from (["status", store, *form] for form in ([], ["--json"]))
     yield from (["spectrum", store, *form] for form in ([], ["-c"], ["-c", "--json"], ["--runs", "--csv"], ["--size", "2700 kg/m^3"]))

@@ -600,20 +600,8 @@ TEST(pixels_are_pinned) {
   look = (struct picture_look){.view = PICTURE_CUT, .axis = 2, .plane = 0.012, .quantity = "pressure", .unit = "Pa"};
   assert_int_equal(picture_particles(at("pressure.png"), 480, &cloud, &look, NULL), STATUS_OK);
 
-  struct picture_margin margins[2] = {{.heading = "campaign a",
-                                       .label = "strain (%)",
-                                       .count = 3,
-                                       .tile = (struct picture_margin_tile[]){{"1", {8, 0, 0}},
-                                                                              {"2 to 3", {4, 2, 2}},
-                                                                              {"5", {0, 0, 1}}}},
-                                      {.heading = "campaign a",
-                                       .label = "angle",
-                                       .count = 2,
-                                       .tile = (struct picture_margin_tile[]){{"2", {0, 3, 1}}, {"6", {1, 0, 0}}}}};
-  assert_int_equal(picture_margins(at("margins.png"), 480, "Which runs are safe", 2, margins, NULL), STATUS_OK);
-
-  static const char *const names[] = {"grains.png", "framed.png",   "cut.png",     "outside.png", "apart.png",
-                                      "damage.png", "pressure.png", "margins.png", "sheet.png"};
+  static const char *const names[] = {"grains.png", "framed.png", "cut.png",      "outside.png",
+                                      "apart.png",  "damage.png", "pressure.png", "sheet.png"};
   static const char *const path = CLAST_SOURCE_DIR "/tests/unit/pictures.txt";
   OWNED char *now = NULL, *pinned = NULL;
   size_t length = 0;
