@@ -399,10 +399,11 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   find->note = launch_note;
   find->note_context = &launch.notes;
   if (launch.manager && !launch.notes.quiet)
-    fprintf(stderr,
-            "clast: at most %zu runs, %d at first; --plan tells what they cost. They are campaigns of their own in "
-            "%s; questions leave out points that only these campaigns have\n",
-            find->most, FIND_FEWEST_RUNS, find->limits.store);
+    fprintf(
+        stderr,
+        "clast: at most %zu runs, %d at first; `clast plan` tells what a run costs. They are campaigns of their own "
+        "in %s; questions leave out points that only these campaigns have\n",
+        find->most, FIND_FEWEST_RUNS, find->limits.store);
   const status code = launch_series(&launch, &series, true, error);
   if (!launch.manager || code != STATUS_OK)
     return code;
@@ -410,91 +411,13 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   return request->picture ? find_print_picture(find, request->picture, &request->chart, error) : STATUS_OK;
 }
 
-/* Has the store the next round, at least half of its runs? Others failed, or are still to be made. */
-static status has_round(const struct find *find, struct store *store, bool *there, struct error *error) {
-  struct campaign round = find->limits;
-  size_t count = 0;
-  round.first_seed += (int64_t)find->runs;
-  for (size_t i = 0; i < find->places; i++) {
-    SCENE scene = campaign_point_scene_from(find->base, &find->limits, &find->place[i], error);
-    if (!scene)
-      return STATUS_CONTENT;
-    for (size_t r = 0; r < find->each; r++) {
-      uint8_t identity[16];
-      scene_identity(scene, campaign_seed(&round, scene, (int64_t)r), identity);
-      count += store_has_run(store, identity);
-    }
-  }
-  *there = 2 * count >= find->places * find->each;
-  return STATUS_OK;
-}
-
-/* Goes through the rounds that the store has, to the places of the next round. If there is none, the last round is left
- * as the next one: the store has all of its runs. */
-static status follow_store(struct find *find, struct error *error) {
-  STORE store = NULL;
-  bool there = false;
-  const status code = store_open_reader(find->limits.store, &store, error);
-  choose_places(find);
-  if (code != STATUS_OK)
-    return code == STATUS_MISSING ? STATUS_OK : code;
-  TRY(has_round(find, store, &there, error));
-  while (there) {
-    const struct find last = *find;
-    TRY(add_round(find, store, error));
-    if (!find->answered)
-      choose_places(find);
-    if (find->answered || find->each == 0) {
-      const struct crossing found = find->found;
-      *find = last;
-      find->found = found;
-      find->answered = true;
-      return STATUS_OK;
-    }
-    TRY(has_round(find, store, &there, error));
-  }
-  return STATUS_OK;
-}
-
-/* The cost of most runs. Later rounds are where the level is crossed, and a run can cost more there than at the ends:
- * the store's rounds tell where. Without them the cost is a range, from runs over the whole bracket to runs at the most
- * expensive of its places. */
-static status print_plan(struct find *find, const struct find_request *request, bool json, struct error *error) {
-  CAMPAIGN campaign = NULL;
-  struct plan plan;
-  const struct plan_options options = {.store_path = find->limits.store, .slots = launch_slots(request->launch.slots)};
-  TRY(follow_store(find, error));
-  if (!find->answered)
-    find->each = (find->most - find->runs) / find->places;
-  TRY(make_campaign(find, &campaign, error));
-  TRY(plan_make(campaign, &options, &plan, error));
-  if (find->runs == 0 && !find->answered)
-    plan_crowd(&plan, options.slots);
-  if (!json) {
-    printf("At most %zu runs, %d at first; fewer when the crossing is known before.\n", find->most, FIND_FEWEST_RUNS);
-    if (find->answered)
-      printf("The store has all of this search (%zu runs)%s\n", find->runs + find->places * find->each,
-             find->found.kind == CROSSING_FOUND || find->found.kind == CROSSING_OPEN
-                 ? "; a narrower interval or a larger --max-runs goes on."
-                 : ", and its answer: the same command without --plan prints it.");
-    else if (find->runs > 0)
-      printf("The store has its first %zu runs; this is the cost of the others, near the crossing.\n", find->runs);
-    else
-      puts("The cost is from runs over the whole bracket to all of them where they take longest.");
-  }
-  const status code = plan_show(campaign, &plan, options.slots, json, error);
-  plan_clear(&plan);
-  return code;
-}
-
 status find_launch(const struct find_request *request, const struct command_line *line, struct error *error) {
   OWNED struct find *find = memory_small(1, sizeof *find);
   status code = read_request(request, line->arguments[0], find, error);
-  if (code == STATUS_OK && !request->plan)
+  if (code == STATUS_OK)
     code = engine_ready(find->base->kind, find->base->inputs, error);
   if (code == STATUS_OK)
-    code = request->plan ? print_plan(find, request, line->format == TABLE_JSON, error)
-                         : run_rounds(find, request, line, error);
+    code = run_rounds(find, request, line, error);
   clear(find);
   return code;
 }

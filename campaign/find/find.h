@@ -16,7 +16,6 @@ struct find_request { /* as on the command line; texts may be NULL */
   const char *quantity, *level, *share, *input, *from, *to, *within, *store, *picture;
   int64_t most_runs;
   struct chart_options chart;
-  bool plan;
 };
 
 struct find {

@@ -422,12 +422,6 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
   plan->fields_bytes = kept > 0 ? kept * plan->memory_most : 0;
 }
 
-void plan_crowd(struct plan *plan, int slots) {
-  const uint64_t runs = plan->runs_most - plan->runs_there;
-  plan->cpu_s_most = (double)runs * (plan->run_s_most + SLOT_S + MANAGER_S);
-  plan->wall_s_most = wall_time(runs, plan->run_s_most / plan->threads, slots);
-}
-
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
                  struct error *error) {
   *plan = (struct plan){.threads = 1, .run_s_mean = NOTHING, .run_s_most = NOTHING, .disk_bytes = NOTHING};

@@ -255,8 +255,6 @@ struct plan {
 
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
                  struct error *error);
-/* The most that the runs cost is that of as many of the most expensive point. */
-void plan_crowd(struct plan *plan, int slots);
 void plan_clear(struct plan *plan);
 /* Prints the plan on standard output, for people or as JSON. */
 status plan_show(const struct campaign *campaign, const struct plan *plan, int slots, bool json, struct error *error);
