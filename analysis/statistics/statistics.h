@@ -690,25 +690,6 @@ struct scatter_histogram scatter_histogram_of(const struct scatter *scatter, dou
  * values differ; larger if a sample had too many bins. */
 double scatter_width_of_all(size_t count, const struct scatter *scatter);
 
-/* The split of a variance over points and runs into inputs and seeds. y(point, run) is a table. Run r has the same seed
- * at all points, or all seeds are independent. Products of different runs have no common error from seeds, so the parts
- * are unbiased in both cases. */
-struct scatter_table {
-  size_t points, runs, axes;
-  const uint32_t *level; /* level[p * axes + a]: number of the value that axis a has at point p, from 0 */
-  const double *value;   /* value[p * runs + r] */
-};
-struct scatter_part {
-  double variance, share; /* of the whole variance; every point has the same weight */
-  double half_width;      /* of the 95 % interval of the share over seeds (jackknife, and sample_alike_half()); NaN
-                             below 3 runs */
-};
-/* parts: an array of axes + 4: every axis alone (variance of its means), all inputs together, seeds, the part of the
- * seeds that is the same at all points, and the whole. Parts of single axes are NaN unless the points are a full grid;
- * for other designs see sensitivity.h. STATUS_USAGE: fewer than two runs or points. */
-enum { SCATTER_INPUTS, SCATTER_SEEDS, SCATTER_SEEDS_ALIKE, SCATTER_WHOLE, SCATTER_PARTS };
-status scatter_split(const struct scatter_table *table, struct scatter_part *parts, struct error *error);
-
 /* ---- which input matters ----
  *
  * Which input matters: Sobol indices from a Saltelli design. The seed of a run is an additional input with its own

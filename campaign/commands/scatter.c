@@ -1,11 +1,10 @@
-/* `clast scatter STORE`: the scatter of runs over seeds, and the shares of seeds and inputs in a variance. */
+/* `clast scatter STORE`: the scatter of runs over seeds. */
 #include <math.h>
 
 #include "campaign/commands/commands.h"
 
 struct options {
   const char *by, *quantity, *half_width, *picture;
-  bool split;
   struct chart_options chart;
 };
 
@@ -30,8 +29,6 @@ static status ask(struct store *store, const struct command_line *line, struct e
   char name[ASK_GROUP_NAME];
   TRY(read_half_width(options->half_width, &choice, error));
   TRY(ask_quantity_main(store, name, &choice.quantity, error));
-  if (options->split)
-    return print_variance(store, &choice, line->format, error);
   TRY(print_scatter_rows(store, &choice, line->format, error));
   if (!options->picture)
     return STATUS_OK;
@@ -43,7 +40,6 @@ static const struct option_row option_rows[] = {
     COMMANDS_BY(struct options, by),
     OPTION_ROW_TEXT("quantity", 'Q', "NAME", struct options, quantity, NULL),
     OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL),
-    OPTION_ROW_FLAG("split", 0, struct options, split),
     OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE.png", struct options, picture),
     CHART_OPTIONS(struct options, chart),
 };

@@ -44,7 +44,7 @@ status print_spectrum_match(struct store *store, const struct spectrum_choice *c
 status print_ejecta(struct store *store, const struct ask_pool_choice *choice, const struct picture_page *page,
                     enum table_format format, struct error *error);
 
-/* ---- how the runs of pools scatter, as rows and a picture, and the split of a variance ---- */
+/* ---- how the runs of pools scatter, as rows and a picture, and which input matters ---- */
 
 struct scatter_choice {
   struct ask_pool_choice pool;
@@ -59,9 +59,6 @@ status print_scatter_rows(struct store *store, const struct scatter_choice *choi
 /* Draws histograms and distribution functions of the first eight pools. */
 status print_scatter_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
                              struct error *error);
-/* Prints a row per part of the variance over all points. */
-status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
-                      struct error *error);
 
 /* Prints a sentence that answers, and a row for each input: first-order indices from the points of the store, of any
  * design. STATUS_USAGE: no input varies, or no run has the result. */

@@ -1,5 +1,5 @@
-/* How runs scatter, as rows and a picture; and the shares of inputs and seeds in the variance of a result: over
- * all points of a store, and as the sensitivity indices of a design. */
+/* How runs scatter, as rows and a picture; and the shares of inputs and seeds in the variance of a result, as
+ * sensitivity indices of any points and of a design. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -296,8 +296,6 @@ static size_t run_cells_balance(struct run_cells *cells, bool *same_seeds) {
   return *same_seeds ? common : least;
 }
 
-/* ---- the split of a variance ---- */
-
 /* Numbers the values of each axis in the order of their first points. */
 static void number_levels(const struct run_cells *cells, uint32_t *level) {
   for (size_t a = 0; a < cells->axes; a++) {
@@ -309,27 +307,6 @@ static void number_levels(const struct run_cells *cells, uint32_t *level) {
       level[c * cells->axes + a] = same < c ? level[same * cells->axes + a] : next++;
     }
   }
-}
-
-static status split(struct run_cells *cells, struct scatter_part *parts, size_t *runs, struct error *error) {
-  OWNED uint32_t *level = NULL;
-  OWNED double *value = NULL;
-  bool same_seeds;
-  *runs = run_cells_balance(cells, &same_seeds);
-  if (cells->count < 2 || *runs < 2)
-    return status_fail(error, STATUS_USAGE, "splitting a variance needs at least two points with two runs each");
-  TRY(memory_array(&level, cells->count * cells->axes, sizeof *level, "the parts of a variance", error));
-  TRY(memory_array(&value, cells->count * *runs, sizeof *value, "the parts of a variance", error));
-  for (size_t c = 0; c < cells->count; c++)
-    for (size_t r = 0; r < *runs; r++)
-      value[c * *runs + r] = cells->cell[c].run[r].value;
-  number_levels(cells, level);
-  return scatter_split(&(struct scatter_table){cells->count, *runs, cells->axes, level, value}, parts, error);
-}
-
-/* A share: its estimate, or an end of its interval, may lie beyond 0 or 1. */
-static double inside(double share) {
-  return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
 /* People see the short names of inputs. */
@@ -346,26 +323,6 @@ static void shorten(struct store *store, enum table_format format, struct run_ce
       }
 }
 
-static status print_parts(const struct run_cells *cells, const struct scatter_part *parts, enum table_format format,
-                          struct error *error) {
-  static const char *const names[SCATTER_PARTS] = {"all inputs together", "seeds", "seeds, in all points alike",
-                                                   "whole"};
-  TABLE table = table_new(format, stdout);
-  table_columns(table, (const char *const[]){"part", "variance", NULL});
-  table_interval_columns(table, "share", "low", "high");
-  table_doubt_columns(table);
-  for (size_t i = 0; i < cells->axes + SCATTER_PARTS; i++) {
-    table_text(table, i < cells->axes ? cells->column[i] : names[i - cells->axes]);
-    table_rests_on(table, &cells->doubts);
-    table_real(table, parts[i].variance);
-    table_rests_on(table, &cells->doubts);
-    const double share = parts[i].share, half_width = parts[i].half_width;
-    table_interval(table, inside(share), inside(share - half_width), inside(share + half_width));
-    table_doubt_cells(table, &cells->doubts);
-  }
-  return table_end(table, error);
-}
-
 /* Reads a cell for each set of the varied inputs, or of those that the choice names. */
 static status read_points(struct store *store, const struct scatter_choice *choice, struct run_cells *cells,
                           struct error *error) {
@@ -379,32 +336,6 @@ static status read_points(struct store *store, const struct scatter_choice *choi
   if (!pool.by)
     pool.by = by;
   return run_cells_read(store, &pool, choice->quantity, cells, error);
-}
-
-status print_variance(struct store *store, const struct scatter_choice *choice, enum table_format format,
-                      struct error *error) {
-  RUN_CELLS cells = {0};
-  struct scatter_part parts[LIMITS_AXES_OF_POOL + SCATTER_PARTS];
-  size_t runs = 0;
-  TRY(read_points(store, choice, &cells, error));
-  TRY(split(&cells, parts, &runs, error));
-  shorten(store, format, &cells);
-  TRY(print_parts(&cells, parts, format, error));
-  if (table_for_people(format)) {
-    uncertainty_doubts(&cells.doubts, stderr);
-    words_print(
-        stderr, "",
-        "clast: %zu points with %zu seeds each, which count alike. Share: of the variance of these points alone "
-        "(`clast sensitivity`: of all points drawn like them). An input: "
-        "variance of its means over the other "
-        "inputs%s what the inputs together have beyond their sum is their interaction. \xc2\xb1 and (a to b): 95 %% "
-        "interval over seeds",
-        cells.count, runs,
-        isnan(parts[0].share) ? ", which only a full grid tells: `clast sensitivity STORE.db` ranks those of other "
-                                "designs;"
-                              : ";");
-  }
-  return STATUS_OK;
 }
 
 /* ---- first-order indices from any points ---- */
@@ -700,7 +631,7 @@ status print_sensitivity_points(struct store *store, const struct scatter_choice
   words_print(
       stderr, "",
       "clast: share: the part of the variance that an input alone explains, with its 95 %% interval, from %zu "
-      "points%s. It is an estimate for all points drawn like these (`clast scatter --split`: of these alone). "
+      "points%s. It is an estimate for all points drawn like these. "
       "What the shares leave is the effect of inputs together%s. rank: inputs with overlapping intervals share it. "
       "Four times the points halve the intervals",
       p.data.points,

@@ -342,7 +342,7 @@ expect 0 "$clast" stats gone.db -Q x --where 'seed > 3' --by a --csv
 same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 3,0 2,1 2,0 " "runs that died are in no choice of runs"
 expect 0 "$clast" stats gone.db -Q x --where 'x > 0' --by a --csv # all runs of a: 9 that there are
 same "$(cut -d, -f5,6 out | tr '\n' ' ')" "n,failed 6,0 3,0 3,0 " "runs that died, if all others are chosen"
-for command in "estimates gone.db" "stats gone.db -Q x" "scatter gone.db -Q x" "scatter gone.db -Q x --split" "sensitivity gone.db -Q x" \
+for command in "estimates gone.db" "stats gone.db -Q x" "scatter gone.db -Q x" "sensitivity gone.db -Q x" \
   "plot gone.db gone.png -Q x" "report gone.db" "run gone-runs.yaml --quiet $word"; do
   "$clast" $command >out 2>err || [ "${command%% *}" = run ] || fail "$command"
   says "6 of 18 runs gave no result"
@@ -419,8 +419,6 @@ expect 0 "$clast" converge slow.yaml $word --knob a=1,2 -Q x --seeds 4 --max-see
 (sed 's/^name: .*/name: search/; s/modulus: .*/modulus: {from: 1.5, to: 10, n: 2}}/; s/quantity: .*//' one.yaml; echo 'set: {fibres: 300}') >search.yaml
 expect 0 "$clast" find search.yaml $word --quantity strength --level 0.5 --within 40%
 prints "rises through 0.5"
-expect 0 "$clast" find search.yaml --quantity strength --level 0.5 --within 0.1% --plan
-prints "for the most expensive (from runs in the store)"
 "$clast" serve search.yaml $word --port 0 -Q strength >/dev/null 2>serve.err &
 pid=$!
 for _ in $(seq 100); do grep -q 'at port' serve.err && break; sleep 0.1; done
@@ -460,4 +458,4 @@ expect 0 "$clast" check dice.db
 expect 0 "$clast" merge mark.db dice.db
 expect 0 "$clast" check mark.db
 same "$(number mark.db 'select sum(z) from runs')" 2 "columns of merged stores"
-done_after 183
+done_after 182

@@ -24,7 +24,6 @@ questions=(
   "estimates one.db"
   "scatter one.db"
   "scatter one.db --by strain"
-  "scatter one.db --split"
   "exponents one.db --draws 100"
   "spectrum one.db"
   "spectrum one.db --with measured.csv"
@@ -130,7 +129,7 @@ same "$(number until.db 'select counts from run where run_id = 1')" 0 "after the
 expect 0 "$clast" check until.db
 
 # One choice of runs for all questions: each command of the results that reads a store has it.
-without="query picture handoff" # SQL of one's own; files
+without="query picture" # SQL of one's own; files
 for command in $("$clast" help | sed -n '/^results:/,/^the store:/s/^  \([a-z]*\) .*/\1/p'); do
   case " $without " in *" $command "*) continue ;; esac
   "$clast" "$command" --help >out
@@ -239,4 +238,4 @@ says "stop.end_time (0.001 s there, 0.0009 s here) differs, and is a varied inpu
 expect 0 "$clast" stats fresh.db --by end_time --csv
 same "$(cut -d, -f1 out | tail -n +2 | tr '\n' ' ')" "0.0009 0.001 " "settings"
 expect 0 "$clast" check fresh.db
-done_after 123
+done_after 121

@@ -387,7 +387,7 @@ expect 64 "$clast" compare small.db:none small.db
 says "no campaign 'none'"
 expect 66 "$clast" compare none.db small.db
 
-# Scatter over seeds, and the split of a variance.
+# Scatter over seeds.
 expect 0 "$clast" scatter small.db --point 2 --half-width 0.02 --csv
 python - <<'PY'
 import csv, sqlite3, statistics
@@ -398,15 +398,6 @@ for name, truth in (("mean", statistics.mean(values)), ("standard deviation", st
 assert float(rows["runs needed"]["value"]) >= 2 and rows["runs"]["value"] == "3"
 PY
 ok "statistics of the scatter"
-expect 0 "$clast" scatter small.db --split --csv
-python - <<'PY'
-import csv
-rows = {r["part"]: r for r in csv.DictReader(open("out"))}
-assert set(rows) == {"threshold_angle", "threshold_strain", "all inputs together", "seeds", "seeds, in all points alike", "whole"}, rows
-share = lambda name: float(rows[name]["share"])
-assert abs(share("all inputs together") + share("seeds") - 1) < 1e-12
-PY
-ok "the shares of inputs and seeds sum to one"
 expect 0 "$clast" scatter small.db --picture scatter.svg -Q fragment_count
 is_svg scatter.svg
 expect 64 "$clast" scatter small.db --half-width none
@@ -418,8 +409,6 @@ wanted = 0.05 * float(rows["mean"]["value"]) # Student's t is at least 1.96
 assert float(rows["runs needed"]["value"]) >= (1.96 * float(rows["standard deviation"]["value"]) / wanted) ** 2, rows
 assert float(rows["runs needed, seeds.until"]["value"]) % 10 == 0, rows # prefixes of 30, 40, ... runs
 PY
-expect 64 "$clast" scatter small.db --split --point 1
-says "at least two points"
 expect 64 "$clast" scatter small.db -Q nothing
 
 # The four names of an exponent, and the goodness of its fit.
@@ -470,4 +459,4 @@ sed -i 's/threshold.angle: .*/contact.law: [conservative, printed]/' laws.yaml
 expect 0 "$clast" run laws.yaml -j 2 --quiet
 expect 64 "$clast" map laws.db laws.png -x contact.law -y strain
 says "the values of contact.law are words"; says "\`clast plot\` draws words, with -x contact.law --by strain"
-done_after 163
+done_after 160

@@ -25,7 +25,7 @@ table() {
   [ "$(widest)" -le 100 ] || fail "$(widest) characters wide: $* --all"
 }
 for command in "stats toy.db --by strain,angle" "stats toy.db --by strain,angle -Q main" "estimates toy.db" "exponents toy.db" \
-  "scatter toy.db" "scatter toy.db --by angle,strain" "scatter toy.db --split" "spectrum toy.db" "status toy.db" \
+  "scatter toy.db" "scatter toy.db --by angle,strain" "spectrum toy.db" "status toy.db" \
   "spectrum toy.db --cumulative --by strain" "extremes toy.db" "compare toy.db:1 toy.db:3" "compare toy.db toy.db" \
   "simulate stick.yaml" "explain stick.yaml"; do
   table "$toy" $command
@@ -57,4 +57,4 @@ prints "stick_strain,stick_angle,engine,results_version,points,n,failed,censored
 # masses of a scene in the plane are per metre of thickness
 expect 0 "$clast" simulate disc-explosion --set body.diameter='6 cm' --set stop.end_time='0.1 ms' --all
 grep -qE '^mean_fragment_mass .* kg/m ' out || fail "a mass of a scene in the plane in kg"
-done_after 92
+done_after 90

@@ -168,58 +168,6 @@ TEST(coverage) {
   }
 }
 
-/* y = 2 a + 3 b + a b + seed, a and b = -1, 0, 1 with variance 2/3 each: 8/3, 6, 4/9, and seeds of variance 4. Shared:
- * three quarters of the seeds' variance is the same in all points. */
-TEST(split_of_a_variance) {
-  enum { A = 3, B = 3, RUNS = 400, POINTS = A * B };
-  uint32_t level[POINTS * 2];
-  OWNED double *value = malloc(POINTS * RUNS * sizeof *value);
-  struct scatter_part parts[2 + SCATTER_PARTS];
-  assert_non_null(value);
-  for (int shared = 0; shared < 2; shared++) {
-    for (uint32_t p = 0; p < POINTS; p++) {
-      const double a = p / B - 1.0, b = p % B - 1.0;
-      level[2 * p] = p / B;
-      level[2 * p + 1] = p % B;
-      for (uint64_t r = 0; r < RUNS; r++)
-        value[p * RUNS + r] = 2 * a + 3 * b + a * b + sqrt(shared ? 3 : 0) * normal(4, 0, r) +
-                              sqrt(shared ? 1 : 4) * normal(5, p, r);
-    }
-    const struct scatter_table table = {POINTS, RUNS, 2, level, value};
-    assert_int_equal(scatter_split(&table, parts, NULL), STATUS_OK);
-    const double truth[] = {8 / 3.0, 6, 8 / 3.0 + 6 + 4 / 9.0, 4, shared ? 3 : 0}, whole = truth[2] + 4;
-    for (int i = 0; i < 5; i++) {
-      assert_true(fabs(parts[i].share - truth[i] / whole) < 2.5 * parts[i].half_width);
-      assert_true(parts[i].half_width > 0 && parts[i].half_width < 0.08);
-    }
-    assert_true(fabs(parts[5].variance - parts[2].variance - parts[3].variance) < 1e-12 && parts[5].share == 1);
-  }
-  /* No input matters: without bias the parts scatter about 0, also with two runs. */
-  double mean = 0;
-  for (uint64_t c = 0; c < 300; c++) {
-    for (size_t i = 0; i < POINTS * 2; i++)
-      value[i] = normal(6, c, i);
-    assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 2, 2, level, value}, parts, NULL), STATUS_OK);
-    assert_true(isnan(parts[0].half_width));
-    mean += parts[2].variance / 300;
-  }
-  assert_true(fabs(mean) < 0.08);
-  assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 1, 2, level, value}, parts, NULL), STATUS_USAGE);
-  /* A mean of 1e9 takes nothing from parts of 1e-3: the seeds, which all points share, are all. */
-  for (uint32_t p = 0; p < POINTS; p++)
-    for (uint64_t r = 0; r < 3; r++)
-      value[p * 3 + r] = 1e9 + 1e-3 * normal(7, 0, r);
-  assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 3, 2, level, value}, parts, NULL), STATUS_OK);
-  for (int i = 0; i < 3; i++)
-    assert_true(fabs(parts[i].share) < 1e-6);
-  assert_true(fabs(parts[3].share - 1) < 1e-6);
-  /* Every point has its own value: no grid, no part of an axis. */
-  for (uint32_t p = 0; p < POINTS; p++)
-    level[2 * p] = p;
-  assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 4, 2, level, value}, parts, NULL), STATUS_OK);
-  assert_true(isnan(parts[0].share) && isnan(parts[1].share) && isfinite(parts[2].share));
-}
-
 /* Values near the ends of double: every number is that of ordinary values times the same power of two, bit for bit. */
 TEST(at_the_ends_of_double) {
   enum { N = 60 };
@@ -257,61 +205,6 @@ TEST(at_the_ends_of_double) {
     for (double width = 0.5; width < 8; width *= 2)
       assert_true(sample_may_stop(N, y, ldexp(width * s, power), 0.95, 30) ==
                   sample_may_stop(N, x, width * s, 0.95, 30));
-  }
-  uint32_t level[] = {0, 1};
-  struct scatter_part parts[1 + SCATTER_PARTS];
-  const double huge[] = {1e160, 2e160, 3e160, 4e160};
-  assert_int_equal(scatter_split(&(struct scatter_table){2, 2, 1, level, huge}, parts, NULL), STATUS_USAGE);
-}
-
-/* Small tables: variances and covariances over n - 1, products over all pairs of different runs. */
-TEST(split_by_hand) {
-  static const uint32_t line[] = {0, 1}, square[] = {0, 0, 0, 1, 1, 0, 1, 1};
-  static const double two[] = {1, 2, 6, 9, 4, 8}, four[] = {1, 4, 2, 6, 3, 9, 7, 2, 6, 11, 14, 17};
-  static const struct {
-    struct scatter_table table;
-    double variance[2 + SCATTER_PARTS];
-  } cases[] = {
-      {{2, 3, 1, line, two}, {3, 3, 7, 1, 10}}, /* axis, inputs, seeds, seeds alike, whole */
-      {{4, 3, 2, square, four}, {113 / 16.0, 153 / 16.0, 833 / 48.0, 41 / 6.0, 7 / 12.0, 387 / 16.0}},
-  };
-  struct scatter_part parts[2 + SCATTER_PARTS];
-  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-    const size_t count = cases[c].table.axes + SCATTER_PARTS;
-    assert_int_equal(scatter_split(&cases[c].table, parts, NULL), STATUS_OK);
-    for (size_t i = 0; i < count; i++) {
-      assert_true(fabs(parts[i].variance - cases[c].variance[i]) < 1e-12);
-      assert_true(fabs(parts[i].share - cases[c].variance[i] / cases[c].variance[count - 1]) < 1e-12);
-    }
-  }
-}
-
-/* The 95 % intervals of a split hold the true shares when few seeds, the same at all points, make a part of the
- * scatter. By the jackknife alone they held them in 0.84 to 0.90 of the cases. */
-TEST(shares_of_few_seeds) {
-  enum { A = 3, B = 4, RUNS = 4, POINTS = A * B, CASES = 2000, COUNT = 5 };
-  uint32_t level[POINTS * 2];
-  double value[POINTS * RUNS];
-  struct scatter_part parts[2 + SCATTER_PARTS];
-  for (uint64_t law = 0; law < 3; law++) {
-    const double alike = law == 0 ? 2 : law == 1 ? 0.5 : 0.1, own = law == 2 ? 1 : 0.2;
-    const double of[2] = {2 / 3.0, 0.25 * 5 / 4}, whole = of[0] + of[1] + alike + own;
-    const double truth[COUNT] = {of[0], of[1], of[0] + of[1], alike + own, alike};
-    int held[COUNT] = {0};
-    for (uint64_t c = 0; c < CASES; c++) {
-      for (uint32_t p = 0; p < POINTS; p++) {
-        level[2 * p] = p / B;
-        level[2 * p + 1] = p % B;
-        for (uint64_t r = 0; r < RUNS; r++)
-          value[p * RUNS + r] = p / B + 0.5 * (p % B) + sqrt(alike) * normal(10 + law, c, r) +
-                                sqrt(own) * normal(20 + law, c, p * RUNS + r);
-      }
-      assert_int_equal(scatter_split(&(struct scatter_table){POINTS, RUNS, 2, level, value}, parts, NULL), STATUS_OK);
-      for (int i = 0; i < COUNT; i++)
-        held[i] += fabs(parts[i].share - truth[i] / whole) <= parts[i].half_width;
-    }
-    for (int i = 0; i < COUNT; i++)
-      assert_true(held[i] >= 0.93 * CASES - 4 * sqrt(0.93 * 0.07 * CASES));
   }
 }
 

@@ -335,23 +335,13 @@ static void of_masses(void) {
 /* ---- shares of inputs ---- */
 
 static void of_inputs(void) {
-  enum { POINTS = 6, RUNS = 3, AXES = 2, BLOCKS = 8, INPUTS = 2 };
+  enum { RUNS = 3, BLOCKS = 8, INPUTS = 2 };
   static double value[BLOCKS * (INPUTS + 2) * RUNS];
   for (size_t k = 0; k < sizeof value / sizeof *value; k++) {
     const double p = (double)(k / RUNS % (INPUTS + 2)), u = random_draw(3, RANDOM_LATTICE, k / RUNS, 0);
     value[k] = u + 0.4 * p * p + 0.1 * random_draw(3, RANDOM_LATTICE, 7, k % RUNS) +
                0.05 * random_draw(3, RANDOM_LATTICE, k, 9);
   }
-  const uint32_t level[POINTS * AXES] = {0, 0, 0, 1, 0, 2, 1, 0, 1, 1, 1, 2},
-                                loose[POINTS * AXES] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
-  for (int grid = 0; grid < 2; grid++)
-    for (size_t runs = 1; runs <= RUNS; runs++) {
-      struct scatter_part parts[AXES + SCATTER_PARTS];
-      const struct scatter_table table = {POINTS, runs, AXES, grid ? level : loose, value};
-      if (scatter_split(&table, parts, NULL) == STATUS_OK)
-        for (size_t p = 0; p < AXES + SCATTER_PARTS; p++)
-          SAY("part", parts[p].variance, parts[p].share, parts[p].half_width);
-    }
   for (size_t seeds = 1; seeds <= RUNS; seeds++)
     for (int same = 0; same < 2; same++) {
       struct sensitivity_index index[INPUTS + 1];
