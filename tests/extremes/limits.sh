@@ -81,4 +81,4 @@ expect 1 "$clast" run failures.yaml -j 2
 says "20"
 [ "$(number failures.db "select count(*) from run")" -lt 60 ] || fail "it did not stop"
 ok "stopped after $(number failures.db "select count(*) from run") runs of 200"
-done_after 34
+done_after 33
