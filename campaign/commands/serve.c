@@ -9,7 +9,7 @@ enum { SHORTEST_TOKEN = 8 };
 
 struct options {
   struct launch_options launch;
-  const char *store, *address, *token, *quantity, *knob;
+  const char *store, *address, *token, *quantity;
   int64_t port, wait;
 };
 
@@ -42,7 +42,7 @@ static status run(const struct command_line *line, struct error *error) {
   OWNED char *token = NULL;
   TRY(read_token(options->token, &token, error));
   TRY(campaign_load(line->arguments[0], &campaign, error));
-  TRY(serve_model_make(campaign, options->quantity, options->knob, &model, error));
+  TRY(serve_model_make(campaign, options->quantity, &model, error));
   LAUNCH launch = {0};
   TRY(launch_begin(&launch, campaign, &options->launch, line, error));
   const struct serve_options serving = {.store = options->store ? options->store : campaign->store,
@@ -59,7 +59,6 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("listen", 0, "ADDRESS", struct options, address, "127.0.0.1"),
     OPTION_ROW_TEXT("token", 0, "FILE", struct options, token, NULL),
     OPTION_ROW_TEXT("quantity", 'Q', "NAMES", struct options, quantity, NULL),
-    OPTION_ROW_TEXT("knob", 'k', "NAME[=VALUES]", struct options, knob, NULL),
     OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600"),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),
     OPTION_ROW_INTEGER("slots", 'j', "N", struct options, launch.slots, 0, 4096, "0"),

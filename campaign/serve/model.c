@@ -46,42 +46,19 @@ static status take_results(struct serve_model *model, const char *names, struct 
   return model->result_count ? STATUS_OK : status_fail(error, STATUS_USAGE, "--quantity names no result");
 }
 
-static status take_levels(struct serve_model *model, const char *text, struct error *error) {
-  const struct campaign *campaign = model->campaign;
-  char name[64];
-  const size_t length = strcspn(text, "=");
-  snprintf(name, sizeof name, "%.*s", (int)length, text);
-  const struct knob *knob = engine_knob(campaign->scene->kind, name, error);
-  if (!knob)
-    return STATUS_USAGE;
-  for (size_t k = 0; k < KNOB_INPUTS && knob->inputs[k].path; k++)
-    if (campaign_axis(campaign, knob->inputs[k].path))
-      return status_fail(error, STATUS_USAGE, "--knob %s sets %s, which the campaign varies", name,
-                         knob->inputs[k].path);
-  OWNED char *notes = NULL;
-  const status code = ladder_make(knob, campaign->scene, text[length] ? text + length + 1 : NULL, &model->ladder,
-                                  &notes, error);
-  if (notes)
-    fputs(notes, stderr);
-  return code;
-}
-
-status serve_model_make(const struct campaign *campaign, const char *results, const char *knob,
-                        struct serve_model *model, struct error *error) {
+status serve_model_make(const struct campaign *campaign, const char *results, struct serve_model *model,
+                        struct error *error) {
   *model = (struct serve_model){.campaign = campaign};
   TRY(take_inputs(model, error));
-  TRY(take_results(model, results ? results : campaign->quantity, error));
-  return knob ? take_levels(model, knob, error) : STATUS_OK;
+  return take_results(model, results ? results : campaign->quantity, error);
 }
 
 void serve_model_clear(struct serve_model *model) {
   free(model->inputs);
-  ladder_clear(&model->ladder);
   *model = (struct serve_model){0};
 }
 
-struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, size_t level,
-                                struct error *error) {
+struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, struct error *error) {
   const struct campaign *campaign = model->campaign;
   OWNED struct field_value *values = NULL;
   if (memory_array(&values, campaign->axis_count, sizeof *values, "a point", error))
@@ -94,8 +71,7 @@ struct scene *serve_model_scene(const struct serve_model *model, const double *i
   for (size_t i = 0; i < campaign->axis_count; i++)
     if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
       design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
-  const struct scene *base = level == SERVE_MODEL_OWN_LEVEL ? campaign->scene : model->ladder.level[level].scene;
-  return campaign_point_scene_from(base, campaign, values, error);
+  return campaign_point_scene(campaign, values, error);
 }
 
 static json_t *describe_row(const struct field *row, int dimensions) {
@@ -104,15 +80,12 @@ static json_t *describe_row(const struct field *row, int dimensions) {
 }
 
 char *serve_model_describe(const struct serve_model *model) {
-  json_t *inputs = json_array(), *results = json_array(), *levels = json_array();
+  json_t *inputs = json_array(), *results = json_array();
   for (size_t i = 0; i < model->input_count; i++)
     json_array_append_new(inputs, describe_row(model->campaign->axes[model->inputs[i]].row, 3));
   for (size_t i = 0; i < model->result_count; i++)
     json_array_append_new(results, describe_row(model->results[i].row, model->campaign->scene->kind->dimensions));
-  for (size_t i = 0; i < model->ladder.count; i++)
-    json_array_append_new(levels, json_string(model->ladder.level[i].setting));
-  json_auto_t *whole = json_pack("{s:s, s:s, s:o, s:o, s:s?, s:o}", "model", model->campaign->name, "scene",
-                                 model->campaign->scene->name, "inputs", inputs, "results", results, "knob",
-                                 model->ladder.count ? model->ladder.knob->name : NULL, "levels", levels);
+  json_auto_t *whole = json_pack("{s:s, s:s, s:o, s:o}", "model", model->campaign->name, "scene",
+                                 model->campaign->scene->name, "inputs", inputs, "results", results);
   return whole ? json_dumps(whole, JSON_INDENT(1)) : NULL;
 }

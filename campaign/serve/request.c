@@ -101,7 +101,6 @@ static bool read_count(const char *name, json_t *value, int64_t least, int64_t m
 
 static bool read_key(const struct serve_model *model, const char *key, json_t *value, struct serve_config *config,
                      struct serve_answer *answer) {
-  int64_t level = 0;
   if (strcmp(key, "results") == 0)
     return read_results(model, value, config, answer);
   if (strcmp(key, "statistic") == 0)
@@ -112,18 +111,9 @@ static bool read_key(const struct serve_model *model, const char *key, json_t *v
     config->single = true;
     return read_count(key, value, 0, INT64_C(1) << 40, &config->first, answer);
   }
-  if (strcmp(key, "level") == 0) {
-    if (model->ladder.count == 0)
-      return refuse(answer, "config.level: this server has no levels; start it with --knob");
-    if (!read_count(key, value, 0, (int64_t)model->ladder.count - 1, &level, answer))
-      return false;
-    config->level = (size_t)level;
-    return true;
-  }
   return answered(answer,
                   serve_request_error(400, "InvalidInput",
-                                      "config.%s: unknown; known are results, statistic, replicates, replicate, level",
-                                      key));
+                                      "config.%s: unknown; known are results, statistic, replicates, replicate", key));
 }
 
 /* Checks statistic and replicates: a single replicate has no statistic, and a scatter needs two replicates. */
@@ -146,8 +136,7 @@ static bool read_config(const struct serve_model *model, json_t *root, struct se
   const char *key;
   *config = (struct serve_config){.result_count = model->result_count,
                                   .statistic_count = 1,
-                                  .count = campaign_replicates_least(model->campaign),
-                                  .level = SERVE_MODEL_OWN_LEVEL};
+                                  .count = campaign_replicates_least(model->campaign)};
   memcpy(config->results, model->results, sizeof config->results);
   if (given && !json_is_object(given) && !json_is_null(given))
     return refuse(answer, "config: expected an object");

@@ -46,7 +46,6 @@ struct serve {
   struct scheduler *scheduler;
   int64_t session_id, campaign_id;
   const char **paths; /* paths of the varied inputs, for the store */
-  size_t path_count;
   struct job *jobs;
   struct wanted *runs;                          /* uthash */
   struct wanted *queue;                         /* those on no slot */
@@ -72,13 +71,10 @@ static void free_wanted(struct wanted *wanted) {
 static status begin(void *context, struct scheduler *scheduler, struct error *error) {
   struct serve *serve = context;
   const struct campaign *campaign = serve->model->campaign;
-  const struct ladder *ladder = &serve->model->ladder;
   serve->scheduler = scheduler;
-  serve->paths = memory_small(campaign->axis_count + KNOB_INPUTS, sizeof *serve->paths);
+  serve->paths = memory_small(campaign->axis_count, sizeof *serve->paths);
   for (size_t i = 0; i < campaign->axis_count; i++)
-    serve->paths[serve->path_count++] = campaign->axes[i].row->path;
-  for (size_t i = 0; ladder->count && i < KNOB_INPUTS && ladder->knob->inputs[i].path; i++)
-    serve->paths[serve->path_count++] = ladder->knob->inputs[i].path;
+    serve->paths[i] = campaign->axes[i].row->path;
   TRY(scheduler_announce(scheduler, campaign, "{\"served\": true}", &serve->session_id, &serve->campaign_id, error));
   TRY(store_flush(scheduler->store, error));
   const int slots = scheduler->options.slots;
@@ -162,8 +158,8 @@ static void want(struct serve *serve, struct job *job, int64_t replicate) {
 /* Finds or adds the point in the store, and requests each missing run. */
 static status open_job(struct serve *serve, struct job *job, struct error *error) {
   const struct serve_config *config = &job->request.config;
-  TRY(store_add_point(serve->scheduler->store, serve->campaign_id, job->scene, serve->path_count, serve->paths,
-                      &job->point_id, error));
+  TRY(store_add_point(serve->scheduler->store, serve->campaign_id, job->scene, serve->model->campaign->axis_count,
+                      serve->paths, &job->point_id, error));
   OWNED bool *there = memory_small((size_t)config->count, sizeof *there);
   TRY(read_store(serve, job, &config->results[0], NULL, there, NULL, error));
   for (int64_t r = 0; r < config->count; r++) {
@@ -185,7 +181,7 @@ struct serve_answer serve_submit(struct serve *serve, struct serve_request *requ
   serve->evaluations++;
   *job = (struct job){.request = *request, .ticket = ticket, .started = clock_s()};
   *request = (struct serve_request){0};
-  job->scene = serve_model_scene(serve->model, job->request.inputs, job->request.config.level, &error);
+  job->scene = serve_model_scene(serve->model, job->request.inputs, &error);
   if (!job->scene)
     answer = error.status == STATUS_MEMORY ? serve_request_error(503, "Unavailable", "%s", error.message)
                                            : serve_request_error(400, "InvalidInput", "%s", error.message);

@@ -4,13 +4,11 @@
  */
 #pragma once
 
-#include "campaign/converge/ladder.h"
 #include "campaign/scheduler/scheduler.h"
 
-/* ---- the model: the varied inputs as numbers, results by name, levels of a knob ---- */
+/* ---- the model: the varied inputs as numbers, results by name ---- */
 
 enum { SERVE_MODEL_RESULTS = 64 };
-#define SERVE_MODEL_OWN_LEVEL ((size_t)-1) /* the scene as it is */
 
 struct serve_result {
   const struct field *row;
@@ -23,24 +21,22 @@ struct serve_model {
   size_t input_count;
   struct serve_result results[SERVE_MODEL_RESULTS]; /* default results of a request */
   size_t result_count;
-  struct ladder ladder; /* count 0: no levels */
 };
 
-/* results: comma-separated names, NULL: the campaign's main quantity. knob: "NAME" or "NAME=VALUE,VALUE", NULL: none.
- * STATUS_CONTENT: nothing is varied, or an input is no number. STATUS_USAGE: an unknown result or knob. Clear *model
+/* results: comma-separated names, NULL: the campaign's main quantity. STATUS_CONTENT:
+ * nothing is varied, or an input is no number. STATUS_USAGE: an unknown result. Clear *model
  * also after an error. */
-status serve_model_make(const struct campaign *campaign, const char *results, const char *knob,
-                        struct serve_model *model, struct error *error);
+status serve_model_make(const struct campaign *campaign, const char *results, struct serve_model *model,
+                        struct error *error);
 void serve_model_clear(struct serve_model *model);
 
 /* STATUS_USAGE: more than SERVE_MODEL_RESULTS results, or one that is not a number of a run. */
 status serve_model_result(const struct serve_model *model, const char *name, struct serve_result *result,
                           struct error *error);
 
-/* The scene of these inputs (input_count of them, SI) at a level. NULL with *error when it cannot be run. Owned by the
+/* The scene of these inputs (input_count of them, SI). NULL with *error when it cannot be run. Owned by the
  * caller. */
-struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, size_t level,
-                                struct error *error);
+struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, struct error *error);
 
 /* Names, units and ranges as JSON, for people and scripts; malloc'd. */
 char *serve_model_describe(const struct serve_model *model);
@@ -68,8 +64,7 @@ bool serve_http_open_to_all(const struct serve_http *http); /* other machines re
  *
  * `config` of a request may have: results (names; default: those of the server), statistic (one of mean, sd, se, hw95,
  * or a list of them; one output vector for each), replicates (how many seeds; default: the campaign's), replicate (one
- * seed, whose results are given as they are), level (of the server's knob, 0: the coarsest; default: the scene as it
- * is). */
+ * seed, whose results are given as they are). */
 
 enum { SERVE_REQUEST_REPLICATES = 10000 }; /* most replicates of one request */
 
@@ -82,7 +77,6 @@ struct serve_config {
   size_t statistic_count;
   int64_t first, count; /* replicates */
   bool single;          /* a single replicate, without statistic */
-  size_t level;         /* index of the level, or SERVE_MODEL_OWN_LEVEL */
 };
 
 struct serve_request {

@@ -103,7 +103,7 @@ def protocol():
     ask("HEAD", "/")
     told = ask("GET", "/")
     assert [row["name"] for row in told["inputs"]] == ["threshold.strain", "threshold.angle", "grain.young_modulus"]
-    assert told["inputs"][2]["unit"] == "Pa" and told["knob"] == "grains" and len(told["levels"]) == 2
+    assert told["inputs"][2]["unit"] == "Pa"
     assert ask("POST", "/ModelInfo", name)["support"] == {"Evaluate": True, "Gradient": False, "ApplyJacobian": False,
                                                           "ApplyHessian": False}
     assert ask("POST", "/InputSizes", name)["inputSizes"] == [3]
@@ -113,14 +113,12 @@ def protocol():
     assert ask("POST", "/OutputSizes", {**name, "config": config})["outputSizes"] == [3, 3]
     assert ask("POST", "/OutputSizes", {**name, "config": {"replicate": 1}})["outputSizes"] == [1]
 
-    # Evaluate: the means of `clast run`; seeds one by one have that mean; more seeds; a level is another scene
+    # Evaluate: the means of `clast run`; seeds one by one have that mean; more seeds
     check_grid(sys.argv[3])
     assert evaluate("disc", vector) == evaluate("disc", vector, replicates=3)
     ones = [evaluate("disc", vector, replicate=r)[0][0] for r in range(3)]
     assert len(set(ones)) == 3 and abs(sum(ones) / 3 - evaluate("disc", vector)[0][0]) < 1e-15
     assert evaluate("disc", vector, replicates=5, statistic="mean") != evaluate("disc", vector)
-    levels = [evaluate("disc", vector, level=level)[0][0] for level in (0, 1)]
-    assert len({*levels}) == 2
     assert len(evaluate("disc", vector, statistic=["mean", "se"], results=["fragment_count"])) == 2
     # many requests for the same new run at once: one answer
     with ThreadPoolExecutor(8) as pool:
@@ -152,8 +150,8 @@ def protocol():
     wrong('{"name": "disc", "name": "disc", "input": [[0.02, 0.05, 1e9]]}')
     for config in ({"oops": 1}, {"replicates": 0}, {"replicates": 1.5}, {"replicates": 10001}, {"replicates": "3"}, {"replicate": -1},
                    {"replicate": 1, "replicates": 2}, {"replicate": 1, "statistic": "mean"}, {"statistic": "median"},
-                   {"statistic": []}, {"statistic": ["mean"] * 5}, {"statistic": 1}, {"statistic": "sd", "replicates": 1}, {"level": 2},
-                   {"level": -1}, {"results": []}, {"results": "largest_fraction"}, {"results": ["no_such"]}, {"results": [1]},
+                   {"statistic": []}, {"statistic": ["mean"] * 5}, {"statistic": 1}, {"statistic": "sd", "replicates": 1}, {"level": 0},
+                   {"results": []}, {"results": "largest_fraction"}, {"results": ["no_such"]}, {"results": [1]},
                    {"results": ["message"]}, [1], "mean"):
         for path in ("/Evaluate", "/OutputSizes"):
             wrong({**name, "input": [vector], "config": config}, path=path)
@@ -193,7 +191,7 @@ def protocol():
 
 def again():
     check_grid(sys.argv[3])
-    assert evaluate("disc", [0.02, 0.05, 1e9], level=1)
+    assert evaluate("disc", [0.02, 0.05, 1e9])
 
 
 def slow():

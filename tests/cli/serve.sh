@@ -48,7 +48,7 @@ expect 0 "$clast" run grid.yaml -j 2 --quiet
 "$clast" export grid.db points.jsonl --per point --jsonl 2>/dev/null
 
 # ---- every request, every error; answers are those of `clast run`, to the last bit
-served disc --knob grains=1.2cm,1.07cm
+served disc
 client protocol points.jsonl
 kept() { [ "$(number disc.db "select count(*) > 0 from runs where counts")" = 1 ]; }
 for _ in $(seq 200); do ! kept || break; sleep 0.1; done # answers may come before the store's next commit
@@ -61,7 +61,7 @@ same "$(number disc.db "select count(*) from estimates where run_id is null and 
 runs=$(number disc.db "select count(*) from runs")
 
 # ---- a second server answers from the store
-served disc --knob grains=1.2cm,1.07cm
+served disc
 client again points.jsonl
 client pipelined
 ended 0 "0 runs computed"
@@ -128,7 +128,6 @@ says "disc.db"
 ended 0 "0 evaluations"
 expect 64 "$clast" serve disc.yaml --port 0 --listen localhost
 expect 64 "$clast" serve disc.yaml --port 0 -Q no_such
-expect 64 "$clast" serve disc.yaml --port 0 --knob no_such
 expect 64 "$clast" serve disc.yaml --port 70000
 sed '/^vary/,/GPa\]/d' disc.yaml >still.yaml
 expect 65 "$clast" serve still.yaml --port 0
