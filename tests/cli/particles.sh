@@ -136,4 +136,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 59
+done_after 57

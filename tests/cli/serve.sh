@@ -134,4 +134,4 @@ expect 65 "$clast" serve still.yaml --port 0
 says "varies nothing"
 sed 's/threshold.angle: \[2 deg, 6 deg\]/contact.law: [conservative, printed]/' disc.yaml >law.yaml
 expect 65 "$clast" serve law.yaml --port 0
-done_after 33
+done_after 32
