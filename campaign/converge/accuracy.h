@@ -52,10 +52,9 @@ struct accuracy {
   double point_s; /* processor time that a point may cost in the mean, s; NaN: an accuracy is given, not a time */
   size_t chosen;  /* the cheapest option that reaches the accuracy, or that with the least total; count: none does. All
                      are in the order of convergence_order() */
-  char advice[1600];  /* how to reach the accuracy, where no option does */
-  char marked[512];   /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
-  char left_out[160]; /* a level of resolution that the study had no time for: "particles = 2400"; "": none */
-  char studied[300];  /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
+  char advice[1600]; /* how to reach the accuracy, where no option does */
+  char marked[512];  /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
+  char studied[300]; /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
   char
       widest_point[500]; /* a sentence on another studied point at which the chosen setting is farthest off; "": none */
   const char *path;      /* the campaign's file with --set and --store of the command (option_words()); borrowed */
