@@ -344,7 +344,8 @@ static status draw(const struct chart *chart, const char *script, size_t size, s
 
 static status draw_in_folder(struct chart *chart, double height, struct error *error) {
   const struct picture_page *page = chart->page;
-  TRY(picture_canvas_named(page->path, error));
+  if (strcmp(chart->template, "movie") != 0) /* a GIF */
+    TRY(picture_canvas_named(page->path, error));
   if (!(page->width >= 200 && page->width <= 8000 && height >= 50 && height <= 16000))
     return status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", page->path, page->width,
                        height);

@@ -543,6 +543,14 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
   return chart_draw(chart, 0.68 * page->width + legend, error);
 }
 
+status picture_movie(const struct picture_page *page, double height, size_t count, const char *const *frame,
+                     struct error *error) {
+  struct chart *chart = chart_new("movie", page, &(struct picture_words){0});
+  chart_number(chart, "frames", (double)count);
+  chart_texts(chart, "frame", count, frame);
+  return chart_draw(chart, height, error);
+}
+
 status picture_collapse(const struct picture_page *page, const struct picture_words *words, const char *const panel[2],
                         size_t count, const struct picture_size *size, struct error *error) {
   double x[2] = {none[0], none[1]}, y[2][2] = {{none[0], none[1]}, {none[0], none[1]}}, low[2], high[2];

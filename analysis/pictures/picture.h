@@ -33,7 +33,7 @@ struct picture_body {
 status picture_fragments_read(const char *path, struct picture_body *body, struct error *error);
 void picture_fragments_clear(struct picture_body *body);
 
-/* One frame for the pictures of a sheet. Begin with PICTURE_NO_FRAME. */
+/* One frame for several pictures of a run: those of a movie or a sheet. Begin with PICTURE_NO_FRAME. */
 struct picture_frame {
   double view[4];   /* m: x0, y0, x1, y1 */
   double low, high; /* of the values */
@@ -249,6 +249,11 @@ struct picture_tile {
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    size_t count, const struct picture_tile *tiles, size_t panels, const char *const *panel,
                    struct error *error);
+
+/* Joins pictures of one size into a movie, by gnuplot. page->path ends in .gif. frame: names relative to the folder of
+ * page->path. */
+status picture_movie(const struct picture_page *page, double height, size_t count, const char *const *frame,
+                     struct error *error);
 
 /* One measured number, and the fit's prediction for one more such experiment. */
 enum { PICTURE_QUANTILES = 5, PICTURE_PREDICTIONS = 32 };

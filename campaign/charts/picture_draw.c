@@ -1,12 +1,13 @@
 /* Draws the body of a fields file: grains in the plane or particles in space, as the file holds them. */
 #include "campaign/charts/charts.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/snapshot_read.h"
 #include "schemas/file.h"
 #include "schemas/memory.h"
@@ -20,18 +21,19 @@ static double width_of(const struct picture_choice *options) {
 
 enum { DOUBTS = 300, MOST_FRAMES = 10000 };
 
-/* All snapshots of a run on a sheet, in one frame and one range of colours. */
-struct series {
-  const char *path;
+/* All snapshots of a run, in one frame and one range of colours: a movie, or a sheet. */
+struct movie {
   struct picture_frame frame;
-  struct picture_sheet *sheet; /* NULL: the frame is being widened */
+  struct picture_sheet *sheet; /* NULL: a movie */
+  const char *series;
+  char folder[FIELD_TEXT_SIZE]; /* of the pictures that a movie needs; "": none */
   size_t count, at;
-  char *fields[MOST_FRAMES]; /* owned */
+  char *fields[MOST_FRAMES], *picture[MOST_FRAMES]; /* owned: snapshots, and their pictures */
 };
 
 /* Writes "! in doubt, 1 of 1 runs: coarse" for a body whose run broke conditions. Prints a line for each on stderr, of
- * a series for its last snapshot. */
-static void tell_doubts(const char *fields, const struct series *series, bool quiet, char text[DOUBTS]) {
+ * a movie for its last snapshot. */
+static void tell_doubts(const char *fields, const struct movie *movie, bool quiet, char text[DOUBTS]) {
   struct snapshot_read *file;
   struct error error;
   struct ask_doubts doubts = {0};
@@ -45,7 +47,7 @@ static void tell_doubts(const char *fields, const struct series *series, bool qu
     return;
   ask_doubts_run(&doubts, engine, words, OUTCOME_DEFAULT, 1);
   charts_doubts(NULL, &doubts, text, DOUBTS);
-  if (!quiet && (!series || series->at + 1 == series->count))
+  if (!quiet && (!movie || movie->at + 1 == movie->count))
     uncertainty_doubts(&doubts, stderr);
 }
 
@@ -61,11 +63,11 @@ void picture_draw_time(double seconds, char text[32]) {
 }
 
 /* "disc_000003: seed 1, 812 us", "end (impact): seed 1, 812 us". The scene and the number of a snapshot are the file's
- * name; the fields of a stored run are named by a hash, and the store knows the scene. Of a series: its name,
- * without a time. */
-static void name_run(const char *fields, const struct series *series, const char *engine, long long seed, double time,
+ * name; the fields of a stored run are named by a hash, and the store knows the scene. Of a movie: the name of its
+ * series; of a sheet, also no time. */
+static void name_run(const char *fields, const struct movie *movie, const char *engine, long long seed, double time,
                      char *text, size_t size) {
-  const char *path = series ? series->path : fields;
+  const char *path = movie ? movie->series : fields;
   const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
   const size_t length = strcspn(base, ".");
   char shown[32], kind[64] = ""; /* the protocol of the scene */
@@ -83,7 +85,7 @@ static void name_run(const char *fields, const struct series *series, const char
   if (*engine)
     text_append(text, size, "%sseed %lld", *text ? ": " : "", seed);
   picture_draw_time(time, shown);
-  if (*shown && !series)
+  if (*shown && !(movie && movie->sheet))
     text_append(text, size, ", %s", shown);
 }
 
@@ -102,9 +104,9 @@ static status widen(struct picture_frame *frame, const struct picture_body *body
   return STATUS_OK;
 }
 
-/* Grains in the plane have one picture only. `picture` NULL: only widens the frame of the series. */
+/* Grains in the plane have one picture only. `picture` NULL: only widens the movie's frame. */
 static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
-                          struct series *series, struct error *error) {
+                          struct movie *movie, struct error *error) {
   struct picture_panel panel = {0};
   struct snapshot_read *file;
   char numbers[160], title[FIELD_TEXT_SIZE], doubts[DOUBTS] = "", engine[64] = "", caption[64];
@@ -119,8 +121,8 @@ static status draw_grains(const char *fields, const char *picture, const struct 
                        fields);
     goto cleanup;
   }
-  if (series && !picture) {
-    code = widen(&series->frame, &panel.body);
+  if (movie && !picture) {
+    code = widen(&movie->frame, &panel.body);
     goto cleanup;
   }
   if (snapshot_read_open(fields, &file, NULL) == STATUS_OK) {
@@ -129,16 +131,16 @@ static status draw_grains(const char *fields, const char *picture, const struct 
     snapshot_read_real(file, "run", "time", &time);
     snapshot_read_close(file);
   }
-  name_run(fields, series, engine, seed, time, title, sizeof title);
+  name_run(fields, movie, engine, seed, time, title, sizeof title);
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  tell_doubts(fields, series, options->quiet, doubts);
+  tell_doubts(fields, movie, options->quiet, doubts);
   panel.caption = *doubts ? doubts : NULL;
-  panel.frame = series ? &series->frame : NULL;
-  if (series) {
+  panel.frame = movie ? &movie->frame : NULL;
+  if (movie && movie->sheet) {
     const char *largest = strstr(numbers, "largest");
     picture_draw_time(time, caption);
     text_append(caption, sizeof caption, "; %s", largest ? largest : "");
-    code = picture_fragments_on_sheet(series->sheet, options->caption ? options->caption : title, caption, &panel,
+    code = picture_fragments_on_sheet(movie->sheet, options->caption ? options->caption : title, caption, &panel,
                                       error);
   } else
     code = picture_fragments(picture, width_of(options), options->caption ? options->caption : title, numbers, &panel,
@@ -176,9 +178,9 @@ static status choose_look(const struct picture_choice *options, struct picture_l
   return unit_read_whole(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
-static void name_look(const char *fields, const struct series *series, const struct picture_look *look,
+static void name_look(const char *fields, const struct movie *movie, const struct picture_look *look,
                       const struct picture_cloud *cloud, char *text, size_t size) {
-  name_run(fields, series, cloud->engine, cloud->seed, cloud->time, text, size);
+  name_run(fields, movie, cloud->engine, cloud->seed, cloud->time, text, size);
   if (look->view == PICTURE_CUT && isfinite(look->plane))
     text_append(text, size, ", cut at %c = %.4g m", 'x' + look->axis, look->plane);
   else if (look->view == PICTURE_CUT)
@@ -201,7 +203,7 @@ static status read_quantity(const char *fields, bool chosen, struct picture_clou
 }
 
 static status draw_particles(const char *fields, const char *picture, const struct picture_choice *options,
-                             struct series *series, struct error *error) {
+                             struct movie *movie, struct error *error) {
   struct picture_look look;
   __attribute__((cleanup(picture_cloud_clear))) struct picture_cloud cloud = {0};
   const char *what;
@@ -209,25 +211,25 @@ static status draw_particles(const char *fields, const char *picture, const stru
   TRY(choose_look(options, &look, &what, error));
   TRY(picture_cloud_read(fields, &cloud, error));
   TRY(read_quantity(fields, options->what != NULL, &cloud, &what, unit, error));
-  name_look(fields, series, &look, &cloud, title, sizeof title);
-  if (series)
+  name_look(fields, movie, &look, &cloud, title, sizeof title);
+  if (movie && movie->sheet)
     picture_draw_time(cloud.time, numbers);
   else
     picture_particles_numbers(&cloud, numbers, sizeof numbers);
   if (picture)
-    tell_doubts(fields, series, options->quiet, doubts);
+    tell_doubts(fields, movie, options->quiet, doubts);
   look.doubts = doubts;
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
-  look.frame = series ? &series->frame : NULL;
-  look.sheet = series ? series->sheet : NULL;
+  look.frame = movie ? &movie->frame : NULL;
+  look.sheet = movie ? movie->sheet : NULL;
   TRY(picture_particles(picture, width_of(options), &cloud, &look, error));
-  if (series && !picture) {
-    free(series->frame.last);
-    series->frame.last = cloud.fragment;
-    series->frame.members = cloud.n;
+  if (movie && !picture) {
+    free(movie->frame.last);
+    movie->frame.last = cloud.fragment;
+    movie->frame.members = cloud.n;
     cloud.fragment = NULL;
   }
   return STATUS_OK;
@@ -289,59 +291,110 @@ cleanup:
 }
 
 static status draw_fields(const char *fields, const char *picture, const struct picture_choice *options,
-                          struct series *series, struct error *error) {
-  return picture_cloud_in_file(fields) ? draw_particles(fields, picture, options, series, error)
-                                       : draw_grains(fields, picture, options, series, error);
+                          struct movie *movie, struct error *error) {
+  return picture_cloud_in_file(fields) ? draw_particles(fields, picture, options, movie, error)
+                                       : draw_grains(fields, picture, options, movie, error);
 }
 
-/* ---- sheets ---- */
+/* ---- movies and sheets ---- */
 
-static void release(struct series *series) {
-  free(series->frame.last);
-  for (size_t i = 0; i < series->count; i++)
-    free(series->fields[i]);
+static void movie_free(struct movie *movie) {
+  free(movie->frame.last);
+  for (size_t i = 0; i < movie->count; i++) {
+    if (*movie->folder && movie->picture[i])
+      unlink(movie->picture[i]);
+    free(movie->fields[i]);
+    free(movie->picture[i]);
+  }
+  if (*movie->folder)
+    rmdir(movie->folder);
 }
 
-/* Reads the list of snapshots that `clast simulate --snapshots` writes. */
-static status read_series(struct series *series, struct error *error) {
-  DOCUMENT document = NULL;
-  TRY(document_open(series->path, &document, error));
-  const char *slash = strrchr(series->path, '/');
-  OWNED char *folder = strndup(series->path, slash ? (size_t)(slash - series->path) : 0);
+/* Reads the list of snapshots that `clast simulate --snapshots` writes. Their pictures get names that begin with
+ * `stem`.
+ */
+static status read_series(const char *series, const char *stem, struct movie *movie, struct error *error) {
+  struct document *document = NULL;
+  TRY(document_open(series, &document, error));
+  const char *slash = strrchr(series, '/');
+  OWNED char *folder = strndup(series, slash ? (size_t)(slash - series) : 0);
   document_node *files = document_key(document_root(document), "files");
   const size_t count = files ? document_count(files) : 0;
   for (size_t i = 0; i < count && i < MOST_FRAMES; i++) {
     document_node *name = document_key(document_item(files, i, NULL), "name");
     const char *word = name ? document_scalar(name) : NULL;
-    series->fields[i] = file_name_in(folder, word ? word : "");
-    if (!series->fields[i])
-      return status_fail(error, STATUS_MEMORY, "no memory for the snapshots");
-    series->count++;
+    movie->fields[i] = file_name_in(folder, word ? word : "");
+    if (asprintf(&movie->picture[i], "%s_%03zu.png", stem, i) < 0)
+      movie->picture[i] = NULL;
+    movie->count++;
+    if (!movie->fields[i] || !movie->picture[i])
+      break;
   }
-  return series->count ? STATUS_OK : status_fail(error, STATUS_CONTENT, "%s lists no snapshots", series->path);
+  document_free(document);
+  if (movie->count == 0)
+    return status_fail(error, STATUS_CONTENT, "%s lists no snapshots", series);
+  return movie->picture[movie->count - 1] && movie->fields[movie->count - 1]
+             ? STATUS_OK
+             : status_fail(error, STATUS_MEMORY, "no memory for a movie");
 }
 
-static status draw_series(const char *path, const char *picture, const struct picture_choice *options,
-                          struct error *error) {
-  __attribute__((cleanup(release))) struct series series = {.path = path, .frame = PICTURE_NO_FRAME};
+static status join(const char *picture, const struct picture_choice *options, const struct movie *movie,
+                   struct error *error) {
+  OWNED const char **name = memory_small(movie->count, sizeof *name);
+  OWNED unsigned char *bytes = NULL;
+  size_t size = 0;
+  const char *slash = strrchr(movie->folder, '/');
+  for (size_t i = 0; i < movie->count; i++)
+    name[i] = movie->picture[i] + (slash ? slash + 1 - movie->folder : 0);
+  TRY(file_read(movie->picture[0], "picture", &bytes, &size, error));
+  struct picture_page page = charts_page(picture, &options->chart);
+  page.width = bytes[18] * 256 + bytes[19]; /* PNG: width at byte 16, height at byte 20, big-endian */
+  return picture_movie(&page, bytes[22] * 256 + bytes[23], movie->count, name, error);
+}
+
+static status draw_sheet(const char *picture, const struct picture_choice *options, struct movie *movie,
+                         struct error *error) {
   status code = STATUS_OK;
+  TRY(picture_sheet_open(picture, movie->count, &movie->frame, &movie->sheet, error));
+  for (movie->at = 0; movie->at < movie->count && !code; movie->at++)
+    code = draw_fields(movie->fields[movie->at], picture, options, movie, error);
+  return picture_sheet_close(movie->sheet, code, error);
+}
+
+static status draw_movie(const char *series, const char *picture, const struct picture_choice *options,
+                         struct error *error) {
+  __attribute__((cleanup(movie_free))) struct movie movie = {.frame = PICTURE_NO_FRAME, .series = series};
+  char stem[FIELD_TEXT_SIZE + 16];
+  const char *ending = strrchr(picture, '.');
+  const bool gif = ending && strcmp(ending, ".gif") == 0;
   if (options->view && strcmp(options->view, "profile") == 0)
     return status_fail(error, STATUS_USAGE, "--view profile is for one snapshot");
-  TRY(picture_canvas_named(picture, error));
-  TRY(read_series(&series, error));
-  for (size_t i = 0; i < series.count; i++)
-    TRY(draw_fields(series.fields[i], NULL, options, &series, error));
-  TRY(picture_sheet_open(picture, series.count, &series.frame, &series.sheet, error));
-  for (; series.at < series.count && !code; series.at++)
-    code = draw_fields(series.fields[series.at], picture, options, &series, error);
-  return picture_sheet_close(series.sheet, code, error);
+  if (!gif && (!ending || (strcmp(ending, ".png") && strcmp(ending, ".svg") && strcmp(ending, ".pdf"))))
+    return status_fail(error, STATUS_USAGE,
+                       "%s: a movie's name ends in .gif; one picture of all snapshots is .png, .svg or .pdf", picture);
+  if (gif) {
+    snprintf(movie.folder, sizeof movie.folder, "%s.XXXXXX", picture);
+    if (!mkdtemp(movie.folder)) {
+      *movie.folder = '\0';
+      return status_fail(error, STATUS_IO, "cannot make a folder beside %s: %s", picture, strerror(errno));
+    }
+  }
+  snprintf(stem, sizeof stem, "%s/frame", movie.folder);
+  TRY(read_series(series, stem, &movie, error));
+  for (size_t i = 0; i < movie.count; i++)
+    TRY(draw_fields(movie.fields[i], NULL, options, &movie, error));
+  if (!gif)
+    return draw_sheet(picture, options, &movie, error);
+  for (movie.at = 0; movie.at < movie.count; movie.at++)
+    TRY(draw_fields(movie.fields[movie.at], movie.picture[movie.at], options, &movie, error));
+  return join(picture, options, &movie, error);
 }
 
 status picture_draw(const char *fields, const char *picture, const struct picture_choice *options,
                     struct error *error) {
   const size_t length = strlen(fields);
   if (length > 7 && strcmp(fields + length - 7, ".series") == 0)
-    return draw_series(fields, picture, options, error);
+    return draw_movie(fields, picture, options, error);
   if (!picture_cloud_in_file(fields) || !options->view || strcmp(options->view, "profile") != 0)
     return draw_fields(fields, picture, options, NULL, error);
   if (options->axis || options->at)

@@ -17,6 +17,8 @@ static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("max-runs", 0, "N", struct find_request, most_runs, FIND_FEWEST_RUNS, FIND_MOST_RUNS, "400"),
     SCENE_OPTION_SET(struct find_request, set),
     OPTION_ROW_TEXT("store", 0, "FILE", struct find_request, store, NULL),
+    OPTION_ROW_OUTPUT(OPTION_PICTURE, "picture", 0, "FILE", struct find_request, picture),
+    CHART_OPTIONS(struct find_request, chart),
     LAUNCH_OPTIONS(struct find_request, launch),
 };
 

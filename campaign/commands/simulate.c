@@ -27,11 +27,11 @@ static status simulate(const struct scene *scene, const char *reference, const s
   condition_tell(scene->kind->conditions, result.outcome.warnings,
                  condition_before(scene->kind->conditions, scene->inputs, NULL), "clast: warning: ", stderr);
   if (options->snapshots && !options->quiet && table_for_people(format)) {
-    char series[LIMITS_PATH], picture[LIMITS_PATH], words[2][TEXT_WORD];
+    char series[LIMITS_PATH], movie[LIMITS_PATH], words[2][TEXT_WORD];
     snprintf(series, sizeof series, "%s.hdf.series", scene->name);
-    snprintf(picture, sizeof picture, "%s.png", scene->name);
-    fprintf(stderr, "clast: `clast picture %s %s` draws the snapshots; ParaView plays them\n",
-            text_word(series, words[0]), text_word(picture, words[1]));
+    snprintf(movie, sizeof movie, "%s.gif", scene->name);
+    fprintf(stderr, "clast: `clast picture %s %s` makes a movie of the snapshots, %s.png one picture\n",
+            text_word(series, words[0]), text_word(movie, words[1]), scene->name);
   }
   return code;
 }

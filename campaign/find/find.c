@@ -407,7 +407,8 @@ static status run_rounds(struct find *find, const struct find_request *request, 
   const status code = launch_series(&launch, &series, true, error);
   if (!launch.manager || code != STATUS_OK)
     return code;
-  return find_print(find, line->format, launch.notes.quiet, error);
+  TRY(find_print(find, line->format, launch.notes.quiet, error));
+  return request->picture ? find_print_picture(find, request->picture, &request->chart, error) : STATUS_OK;
 }
 
 status find_launch(const struct find_request *request, const struct command_line *line, struct error *error) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "analysis/inference/crossing.h"
+#include "campaign/charts/charts.h"
 #include "campaign/launch/launch.h"
 
 enum { FIND_WIDTHS = 24 };
@@ -12,8 +13,9 @@ enum { FIND_FEWEST_RUNS = CROSSING_FIRST * CROSSING_RUNS, FIND_MOST_RUNS = 5000 
 struct find_request { /* as on the command line; texts may be NULL */
   struct launch_options launch;
   struct option_list set;
-  const char *quantity, *level, *share, *input, *from, *to, *within, *store;
+  const char *quantity, *level, *share, *input, *from, *to, *within, *store, *picture;
   int64_t most_runs;
+  struct chart_options chart;
 };
 
 struct find {
@@ -76,6 +78,8 @@ status find_launch(const struct find_request *request, const struct command_line
 /* For people a sentence and a table of the runs along the input. For programs a row per crossing. quiet: no remarks but
  * on runs in doubt. */
 status find_print(const struct find *find, enum table_format format, bool quiet, struct error *error);
+status find_print_picture(const struct find *find, const char *path, const struct chart_options *chart,
+                          struct error *error);
 /* A value of the input as people read it. */
 enum { FIND_TEXT = 96 };
 /* With the digits that a range of places allows, two of its width; its own ends are rounded outwards. */

@@ -1,4 +1,4 @@
-/* The answer of a search as a sentence and as rows. */
+/* The answer of a search as a sentence, as rows, and as a picture. */
 #include "campaign/find/find.h"
 
 #include <math.h>
@@ -426,4 +426,64 @@ status find_print(const struct find *find, enum table_format format, bool quiet,
     fprintf(stderr, "clast: %zu of %zu runs have no such result and are left out\n", find->failed, find->runs);
   TRY(tell_others(find, error));
   return tell_resolution(find, error);
+}
+
+/* ---- the picture ---- */
+
+status find_print_picture(const struct find *find, const char *path, const struct chart_options *chart,
+                          struct error *error) {
+  struct bin bins[2 * BINS + 2];
+  struct picture_mean means[2 * BINS + 2], level[2], interval[2];
+  size_t count;
+  char x[CHARTS_LABEL], y[CHARTS_LABEL], column[FIELD_TEXT_SIZE], title[SENTENCE], caption[CHARTS_LABEL] = "";
+  const struct crossing *found = &find->found;
+  const bool is_share = !isnan(find->share);
+  const double at = is_share ? find->share : find->level;
+  double least = at, most = at;
+  const char *unit;
+  const double one_of_unit = find_unit(find, &unit);
+  STORE store = NULL;
+  TRY(store_open_reader(find->limits.store, &store, error));
+  TRY(make_bins(find, bins, &count, error));
+  for (size_t i = 0; i < count; i++) {
+    const double share = (double)bins[i].above / (double)bins[i].n;
+    const struct sample_summary *mean = &bins[i].mean;
+    means[i] = (struct picture_mean){value_at(find, bins[i].x) / one_of_unit,
+                                     is_share ? share : mean->mean,
+                                     is_share ? (double)NAN : mean->low,
+                                     is_share ? (double)NAN : mean->high,
+                                     NAN,
+                                     bins[i].doubts.doubtful > 0};
+    least = fmin(least, means[i].y);
+    most = fmax(most, means[i].y);
+  }
+  const double low = value_at(find, fmax(found->low, 0)) / one_of_unit,
+               high = value_at(find, fmin(found->high, 1)) / one_of_unit;
+  for (int i = 0; i < 2; i++) {
+    level[i] = (struct picture_mean){(i ? find->to : find->from) / one_of_unit, at, at, at, NAN, false};
+    interval[i] = (struct picture_mean){i ? high : low, at, least, most, NAN, false};
+  }
+  const struct picture_mean crossing = {value_at(find, found->at) / one_of_unit, at, NAN, NAN, NAN, false};
+  const struct picture_curve curves[] = {
+      {.label = is_share ? "share of runs above" : "mean of neighbouring runs, 95 % interval",
+       .count = count,
+       .mean = means},
+      {.label = "level", .count = 2, .mean = level, .band = true},
+      {.label = "band: 95 % interval of the crossing", .count = 2, .mean = interval, .band = true},
+      {.label = "crossing", .count = 1, .mean = &crossing, .scattered = true},
+  };
+  const bool one = found->kind == CROSSING_FOUND || found->kind == CROSSING_PLATEAU;
+  field_column_name(find->input->path, column, sizeof column);
+  charts_label(column, x);
+  if (*unit)
+    text_append(x, sizeof x, " (%s)", unit);
+  field_column_name(find->quantity.row->path, column, sizeof column);
+  TRY(charts_axis(store, column, y, error));
+  if (is_share)
+    snprintf(y, sizeof y, "share of runs above the level");
+  write_sentence(find, title);
+  charts_doubts(NULL, &find->doubts, caption, sizeof caption);
+  const struct picture_page page = charts_page(path, chart);
+  const struct picture_words words = {title, caption, x, y};
+  return picture_curves(&page, &words, found->kind == CROSSING_FOUND ? 4 : one ? 3 : 2, curves, error);
 }

@@ -114,7 +114,8 @@ for command in $("$clast" help | awk '/:$/ {group = $0} /^  [a-z]/ && group != "
     columns 1 "${study[@]}" ;;
   find) search=(find unknown.yaml --level 0.25 --max-runs 20 --store found.db --quiet)
     marked "18 of 20" "${search[@]}"
-    columns 0 "${search[@]}" ;;
+    columns 0 "${search[@]}"
+    caption o "${search[@]}" --picture o.png ;;
   fit) marked "60 of 71" fit measured.yaml unknown.yaml --rounds 3 --quiet
     columns 0 fit measured.yaml unknown.yaml --rounds 3 --quiet
     caption q fit measured.yaml unknown.yaml --rounds 3 --quiet --picture q.png ;;

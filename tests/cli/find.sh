@@ -13,7 +13,8 @@ store: disc.db
 YAML
 search=(disc.yaml --level 0.5 --share 50% --within "25 %")
 
-expect 0 "$clast" find "${search[@]}" -j 1
+expect 0 "$clast" find "${search[@]}" -j 1 --picture disc.png
+[ -s disc.png ] || fail "no picture"
 head -2 out | paste -sd ' ' | grep -qE '^The share of runs with largest_fraction above 0.5 rises through 0.5 at threshold.strain = [0-9.]+ %( !)? \(95 % interval [0-9.]+ % to [0-9.]+ %\)\.( |$)' ||
   fail "the first line is not the answer"
 ok "the first line answers"
@@ -41,7 +42,6 @@ prints "a larger --max-runs goes on."; ! grep -q "needs about" out || fail "a nu
 expect 0 "$clast" status disc.db # its rounds are one row, with a name that can be typed
 grep -q '^ *-  disc find threshold.strain ' out || fail "the rounds are no row of their name"
 expect 0 "$clast" stats disc.db --campaign 'disc find threshold.strain'
-expect 0 "$clast" plot disc.db disc.svg -x strain --campaign 'disc find threshold.strain'
 expect 0 "$clast" find "${search[@]}" -j 2 --json
 says "0 runs computed"; says "$runs found in the store"
 cp out one.json
@@ -203,4 +203,10 @@ prints "The mean of largest_fraction"
 expect 0 "$clast" find two.yaml --level 0.5 --input angle --from 2deg --to 6deg --set strain=3% --max-runs 20 --store set.db
 same "$(number set.db "select group_concat(place, ' ') from (select distinct round(value * 57.29577951308232, 6) as place from point_input join campaign_point using (point_id) join campaign using (campaign_id) where path = 'threshold.angle' and name like '%angle' order by 1)")" "2.0 3.0 4.0 5.0 6.0" "places are round in degrees"
 tr '\n' ' ' <err | grep -qE "'threshold.angle=[0-9.]+ deg'" || fail "the study advised is in other units: $(cat err)"
-done_after 62
+# A picture has the point of the bracket's end, also with nine runs there.
+printf '%s\n' 'name: ex log' 'scene: disc-explosion' 'set: {body.diameter: 7 cm}' 'vary: {charge.energy: [0.2 kJ/m, 10 kJ/m]}' \
+  'seeds: {per_point: 2}' 'store: exlog.db' >exlog.yaml
+expect 0 "$clast" find exlog.yaml -Q second_fraction --level 0.12 --within '15 %' --max-runs 100 --quiet --picture e.svg --keep-script
+grep -q '^10 0\.' e.dat && ! grep -q '^NaN [0-9]' e.dat || fail "the end of the bracket is not drawn: $(cat e.dat)"
+ok "a picture has every place"
+done_after 63

@@ -20,15 +20,24 @@ for k, time in enumerate(times):
 PY
 ok "the series lists four snapshots and their times"
 
-# All snapshots in one picture, a row of four.
+# All snapshots in one picture, a row of four; and a movie with as many frames as there are snapshots, each in the colours of
+# the picture: the lightest of the damage is in a table of colours.
 expect 0 "$clast" picture basalt-sphere.hdf.series all.png
 same "$(grep -c 'marked (!).*coarse' err)" 1 "one line on doubts, of the last snapshot"
+expect 0 "$clast" picture basalt-sphere.hdf.series movie.gif
+same "$(grep -c 'marked (!).*coarse' err)" 1 "one line on doubts, of the last frame"
 python - <<'PY'
 import struct
 wide, tall = struct.unpack(">II", open("all.png", "rb").read()[16:24])
 assert wide > 4 * 250 and tall < 600, (wide, tall)
+movie = open("movie.gif", "rb").read()
+assert movie[:4] == b"GIF8" and movie.count(b"\x21\xf9\x04") >= 4
+tables = [movie[13:13 + 768]] + [movie[at + 10:at + 778] for at in range(len(movie) - 778) if movie[at] == 0x2C and movie[at + 9] == 0x87]
+near = min(max(abs(a - b) for a, b in zip(t[k:k + 3], (231, 224, 211))) for t in tables for k in range(0, 768, 3))
+assert near <= 4, near
 PY
-ok "a sheet of the snapshots"
+[ "$(echo movie* all*)" = "movie.gif all.png" ] || fail "the frames of the movie stay: $(echo movie* all*)"
+ok "a movie of the snapshots, and a sheet"
 expect 64 "$clast" picture basalt-sphere.hdf.series movie.mp4
 expect 66 "$clast" picture none.hdf none.png --what damage
 
@@ -136,4 +145,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 57
+done_after 59
