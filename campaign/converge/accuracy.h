@@ -14,23 +14,24 @@ struct accuracy_part {
   const struct knob *knob;
   bool open; /* no limit is seen, and what may lie beyond the levels is no small part of what is allowed */
   double error, left_by_seeds;
-  double beyond;                 /* NaN: not known */
-  double finest;                 /* setting of the finest level; 0: none */
-  int64_t seeds, coarser, point; /* coarser: levels with runs that are coarser than the finest one */
+  double beyond; /* NaN: not known */
+  double finest; /* setting of the finest level; 0: none */
+  int64_t seeds;
 };
 
 /* A way to run the campaign: one level of one knob, all other inputs as in the campaign's scene. */
 struct accuracy_option {
   char knob[64], setting[64];
-  bool own;      /* the scene's own settings */
-  bool open;     /* the error is no bound */
-  double error;  /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
-  int64_t point; /* in the store */
-  struct accuracy_part part[LIMITS_STUDY_KNOBS]; /* of the error, by name */
+  bool own;          /* the scene's own settings */
+  bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
+  bool open;         /* the error is no bound */
+  double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
+  int64_t point;     /* in the store */
+  struct accuracy_part part[LIMITS_STUDY_KNOBS]; /* of the error, largest first */
   size_t part_count;
-  double beyond; /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
-                    the option is chosen for a time only. Else 0 */
-  double mean;
+  double beyond;    /* if open: what the slowest law would leave beyond the finest levels, a guess. NaN: not known; then
+                       the option is chosen for a time only. Else 0 */
+  double mean;      /* of an extrapolated one that of the finest level with runs */
   int64_t n;        /* seeds of this mean */
   double within;    /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
   bool share;       /* of a share, whose intervals in tables are wider than Student's */
@@ -40,7 +41,9 @@ struct accuracy_option {
                        when seeds is 0 */
   double run_s;     /* processor time of a run, s: mean over the points */
   double cpu_s;     /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
-  char marks[ACCURACY_MARKS]; /* of the level's runs: "3 of 4 runs of the study: cut"; "": none */
+
+  char marks[ACCURACY_MARKS]; /* of the level's runs, of an extrapolated one those of the finest: "3 of 4 runs of the
+                                 study: cut"; "": none */
 };
 
 struct accuracy {
@@ -52,14 +55,16 @@ struct accuracy {
   char advice[1600]; /* how to reach the accuracy, where no option does */
   char marked[512];  /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
   char studied[300]; /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
-  char widest_point[500]; /* on another studied point at which the chosen setting is farthest off; "": none */
-  const char *path;       /* the campaign's file with --set and --store of the command (option_words()); borrowed */
-  size_t reference;       /* the option with the smallest error */
+  char
+      widest_point[500]; /* a sentence on another studied point at which the chosen setting is farthest off; "": none */
+  const char *path;      /* the campaign's file with --set and --store of the command (option_words()); borrowed */
+  size_t reference;      /* the option with the smallest error; costs are relative to it */
 };
 
-/* Finds the options of a campaign with the key `accuracy`. Of the studies of the campaign's scene and of its points,
- * the one that needs most is used for all points. Levels of inputs that the campaign varies are no options.
- * STATUS_CONTENT: the store has no study; *error names the command that makes it, with `path` as in struct accuracy. */
+/* Finds the options of a campaign with the key `accuracy`. Looks for a study of the campaign's scene, then of its
+ * points: one study is used for all points. Levels of inputs that the campaign varies are no options. STATUS_CONTENT:
+ * the store has no study; *error names the command that makes it, with `path` as in struct accuracy. STATUS_MISSING:
+ * there is no store. */
 status accuracy_find(const struct campaign *campaign, const char *path, const char *store, struct accuracy *accuracy,
                      struct error *error);
 void accuracy_clear(struct accuracy *accuracy); /* a zeroed one is fine */

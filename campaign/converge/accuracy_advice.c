@@ -5,7 +5,10 @@
 
 #include "campaign/converge/accuracy_finding.h"
 
-enum { MOST_SEEDS = 1000, FIRST_SEEDS = 4 }; /* of an advised study; of `clast converge` without --seeds */
+enum {
+  MOST_SEEDS = 1000, /* a study with more is no advice */
+  FIRST_SEEDS = 4    /* of `clast converge` without --seeds */
+};
 
 /* The next finer level of a knob of numbers, over a level. */
 static double finer_by(const struct knob *knob) {
@@ -28,25 +31,59 @@ static double finest_of(const struct campaign *campaign, const struct accuracy_p
   return strtod(own, NULL);
 }
 
-/* The first condition that would mark this scene's result and not that of the campaign's scene (finer grains with the
- * same time step). NULL: none. */
-static const struct condition *mark_of(const struct campaign *campaign, const struct scene *scene) {
-  const struct condition *list = scene->kind->conditions;
-  const condition_set marks = condition_before(list, scene->inputs, NULL) &
-                              ~condition_before(list, campaign->scene->inputs, NULL);
-  size_t k = 0;
-  while (marks && !(marks >> k & 1))
-    k++;
-  return marks ? &list[k] : NULL;
-}
-
 /* The condition that marks the next finer level of the knob. NULL: none does. */
 static const struct condition *mark_of_finer(const struct accuracy_finding *finding, const struct accuracy_part *part) {
   struct error ignored;
   char finer[64];
   SCENE scene = scene_copy(finding->campaign->scene);
   snprintf(finer, sizeof finer, "%.6g", finest_of(finding->campaign, part) * finer_by(part->knob));
-  return ladder_turn(part->knob, scene, finer, &ignored) == STATUS_OK ? mark_of(finding->campaign, scene) : NULL;
+  return ladder_turn(part->knob, scene, finer, &ignored) == STATUS_OK ? accuracy_mark(finding->campaign, scene) : NULL;
+}
+
+/* Appends a level to a list unless it is there already: a level of the study within 2 % takes its place. */
+static void append_level(const struct accuracy_finding *finding, const struct knob *knob, double value, char *list,
+                         size_t size) {
+  char level[80], word[80];
+  size_t count;
+  double least = 0.02 * value;
+  const struct convergence_row *rows = accuracy_rows(finding, finding->point, &count);
+  snprintf(level, sizeof level, "%.4g", value);
+  for (size_t r = 0; r < count; r++) {
+    const double far = fabs(strtod(rows[r].setting, NULL) - value);
+    if (strcmp(rows[r].knob, knob->name) != 0 || !(rows[r].n > 0 || rows[r].base) || !(far < least))
+      continue;
+    least = far;
+    snprintf(level, sizeof level, "%.63s", rows[r].setting);
+  }
+  text_append(level, sizeof level, "%s", unit_of(finding->campaign, knob));
+  for (const char *words = list; ladder_next_word(&words, word, sizeof word);)
+    if (strcmp(word, level) == 0)
+      return;
+  text_append(list, size, "%s%s", *list ? "," : "", level);
+}
+
+/* The command that studies the knob at its finest level, one on either side, and the scene's own, whose error is
+ * wanted. */
+static void append_study(const struct accuracy_finding *finding, const struct accuracy_part *part, char *next,
+                         size_t size) {
+  const struct knob *knob = part->knob;
+  const struct condition *mark = mark_of_finer(finding, part);
+  const double finer = finer_by(knob), value = finest_of(finding->campaign, part);
+  char own[64], list[512] = "";
+  ladder_setting(knob, finding->campaign->scene, own, sizeof own);
+  if (mark)
+    text_append(next, size,
+                ", but their runs would be in doubt (%s) and not count: %s, with --set here and in later "
+                "commands",
+                mark->word, mark->remedy ? mark->remedy : mark->doubt);
+  const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
+  for (size_t i = 0; i < 4 && value > 0; i++)
+    append_level(finding, knob, levels[i], list, sizeof list);
+  text_append(next, size, ": `clast converge %s --knob %s%s%s", finding->accuracy->path, knob->name, *list ? "=" : "",
+              list);
+  if (part->seeds > FIRST_SEEDS) /* not fewer than the study has */
+    text_append(next, size, " --seeds %lld", (long long)part->seeds);
+  text_append(next, size, "`");
 }
 
 /* Have runs told that finer levels of the knob are in doubt, for a reason that is not known before them? */
@@ -59,45 +96,45 @@ static double told_of(const struct accuracy_option *option, const struct accurac
   return (part->error > 0 ? part->error : 0) + (option->open && part->beyond > 0 ? part->beyond : 0);
 }
 
-/* Appends the levels of a knob of the study, "0.02m,0.01m". finest > 0: also those that it had no time for, the finest
- * level that any study has, and one beyond it, if they are finer. */
-static void append_levels(const struct accuracy_finding *finding, const struct knob *knob, double finest, char *text,
-                          size_t size) {
-  size_t count;
-  double last = 0;
-  bool late = false; /* is the last level finer than all runs? */
-  const char *before = "", *unit = unit_of(finding->campaign, knob);
-  const struct convergence_row *rows = accuracy_rows(finding, finding->point, &count);
-  for (size_t r = 0; r < count; r++) {
-    const bool ran = rows[r].n > 0, wanted = isnan(rows[r].cpu) && (isnan(rows[r].resolution) || rows[r].open);
-    if (strcmp(rows[r].knob, knob->name) != 0 || !(ran || (finest > 0 && wanted)))
-      continue;
-    text_append(text, size, "%s%s%s", before, rows[r].setting, unit);
-    before = ",";
-    late = !ran && !rows[r].base;
-    last = strtod(rows[r].setting, NULL);
-  }
-  for (int i = 0; i < 2 && finest > 0 && !late; i++, finest *= finer_by(knob)) {
-    const double beyond = last > 0 ? log(finest / last) / log(finer_by(knob)) : 1;
-    if (i == 1 || beyond > 0.03) /* not the same but for its digits */
-      text_append(text, size, finest < 1000 ? "%s%.4g%s" : "%s%.0f%s", before, finest, unit);
-    before = ",";
-  }
+/* A level that a study of resolution had no time for. */
+static bool is_late(const struct convergence_row *row) {
+  return row->n == 0 && isnan(row->cpu) && (isnan(row->resolution) || row->open);
 }
 
-/* The command that studies finer levels, too. */
-static void append_study(const struct accuracy_finding *finding, const struct accuracy_part *part, char *next,
-                         size_t size) {
-  const struct condition *mark = mark_of_finer(finding, part);
-  if (mark)
-    text_append(next, size,
-                ", but their runs would be in doubt (%s) and not count: %s, with --set here and in later commands",
-                mark->word, mark->remedy ? mark->remedy : mark->doubt);
-  text_append(next, size, ": `clast converge %s --knob %s=", finding->accuracy->path, part->knob->name);
-  append_levels(finding, part->knob, finest_of(finding->campaign, part), next, size);
-  if (part->seeds > FIRST_SEEDS) /* not fewer than the study has */
-    text_append(next, size, " --seeds %lld", (long long)part->seeds);
-  text_append(next, size, "`");
+/* Appends the levels of a knob of the study, "0.02m,0.01m", with those that it had no time for if `late`. */
+static void append_levels(const struct accuracy_finding *finding, const struct knob *knob, bool late, char *text,
+                          size_t size) {
+  size_t count;
+  const char *before = "";
+  const struct convergence_row *rows = accuracy_rows(finding, finding->point, &count);
+  for (size_t r = 0; r < count; r++)
+    if (strcmp(rows[r].knob, knob->name) == 0 && (rows[r].n > 0 || (late && is_late(&rows[r])))) {
+      text_append(text, size, "%s%s%s", before, rows[r].setting, unit_of(finding->campaign, knob));
+      before = ",";
+    }
+}
+
+/* The study of the knob had no time for levels that are finer than those that ran: it can go on. */
+static bool advise_late(const struct accuracy_finding *finding, const struct knob *knob, char *next, size_t size) {
+  size_t count;
+  char late[200] = "";
+  bool ran = false, finer = false;
+  const struct convergence_row *rows = accuracy_rows(finding, finding->point, &count);
+  for (size_t r = 0; r < count; r++) {
+    if (strcmp(rows[r].knob, knob->name) != 0)
+      continue;
+    ran |= rows[r].n > 0;
+    finer |= ran && is_late(&rows[r]) && !rows[r].base;
+    if (ran && is_late(&rows[r]))
+      text_append(late, sizeof late, "%s%s", *late ? ", " : "", rows[r].setting);
+  }
+  if (!finer)
+    return false;
+  text_append(next, size, "The study had no time for %s = %s: `clast converge %s --quantity %s --knob %s=", knob->name,
+              late, finding->accuracy->path, finding->campaign->accuracy_quantity, knob->name);
+  append_levels(finding, knob, true, next, size);
+  text_append(next, size, "` goes on with it and takes its time");
+  return true;
 }
 
 /* More seeds at the levels of the study: they narrow the interval of each knob's distance to the limit, and leave its
@@ -124,7 +161,7 @@ static void advise_seeds(const struct accuracy_finding *finding, const struct ac
   text_append(next, size, ": `clast converge %s", finding->accuracy->path);
   for (size_t k = 0; k < best->part_count; k++) {
     char levels[512] = "";
-    append_levels(finding, best->part[k].knob, 0, levels, sizeof levels);
+    append_levels(finding, best->part[k].knob, false, levels, sizeof levels);
     if (best->part[k].knob->group == KNOB_RESOLUTION && *levels)
       text_append(next, size, " --knob %s=%s", best->part[k].knob->name, levels);
   }
@@ -149,15 +186,19 @@ void accuracy_advise(const struct accuracy_finding *finding) {
       widest = part;
   }
   const double seeds = open ? 0 : seeds_for(best, middle);
-  if (seeds == 0 && !open && best->error > 0)
-    text_append(next, size, "More seeds leave about %.2g%s of it. ", fmin(middle, accuracy_resolution(best)), unit);
-  if (seeds > 0)
+  if (seeds == 0 && widest && advise_late(finding, widest->knob, next, size))
+    return;
+  if (seeds > 0) {
     advise_seeds(finding, best, middle, seeds, next, size);
-  else if (!widest)
-    text_append(next, size, "No setting that was studied is enough");
-  else {
-    text_append(next, size, "Finer levels of %s, which leaves most of it (%.2g%s), may narrow it", widest->knob->name,
-                fmin(told_of(best, widest), accuracy_resolution(best)), unit);
-    append_study(finding, widest, next, size);
+    return;
   }
+  if (!open && best->error > 0)
+    text_append(next, size, "More seeds leave about %.2g%s of it. ", fmin(middle, accuracy_resolution(best)), unit);
+  if (!widest) {
+    text_append(next, size, "No setting that was studied is enough");
+    return;
+  }
+  text_append(next, size, "Finer levels of %s, which leaves most of it (%.2g%s), may narrow it", widest->knob->name,
+              told_of(best, widest), unit);
+  append_study(finding, widest, next, size);
 }

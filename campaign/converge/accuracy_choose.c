@@ -14,6 +14,11 @@ double accuracy_most(bool share, double mean) {
   return share ? fmax(mean, 1 - mean) : HUGE_VAL;
 }
 
+/* Runs of a share that are all equal may miss a rare outcome: what n of them leave. */
+static double left_by_equal(double mean, int64_t n) {
+  return accuracy_most(true, mean) * (1 - pow(0.05, 1 / (double)n));
+}
+
 int64_t accuracy_seeds(double mean, double deviation, double margin, bool share) {
   const bool equal = deviation >= 0 && !(deviation > SAMPLE_ROUNDING * fabs(mean));
   int64_t seeds;
@@ -30,7 +35,7 @@ int64_t accuracy_seeds(double mean, double deviation, double margin, bool share)
 }
 
 /* True when the campaign varies an input that this level of the knob sets. */
-static bool is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting) {
+bool accuracy_is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   for (size_t i = 0; i < KNOB_INPUTS && knob->inputs[i].path; i++)
     if (campaign_axis(campaign, knob->inputs[i].path))
       return true;
@@ -49,18 +54,23 @@ double accuracy_allowed(const struct campaign *campaign, double mean) {
 
 /* A knob's part of the error of an option. One change between levels may be small by chance: it counts only where it is
  * a small part of what is allowed. */
-static void take_part(const struct accuracy_part *part, struct accuracy_option *option) {
+static void take_part(const struct accuracy_row_part *from, struct accuracy_option *option) {
+  const struct ask_part *part = &from->part;
   const bool small = part->beyond < SMALL * option->within;
   size_t at = option->part_count;
   if (at == LIMITS_STUDY_KNOBS)
     return;
   option->part_count++;
-  for (; at > 0 && strcmp(option->part[at - 1].knob->name, part->knob->name) > 0; at--) /* by name */
+  for (; at > 0 && strcmp(option->part[at - 1].knob->name, from->knob->name) > 0; at--)
     option->part[at] = option->part[at - 1];
-  option->part[at] = *part;
-  option->part[at].open = part->open && !small && part->error != 0;
-  if (part->open && !small && part->coarser < 2)
-    option->part[at].beyond = NAN;
+  option->part[at] = (struct accuracy_part){.knob = from->knob,
+                                            .open = part->open && !small && part->error != 0,
+                                            .error = part->error,
+                                            .left_by_seeds = part->left_by_seeds,
+                                            .beyond = part->coarser > 1 || small || !part->open ? part->beyond
+                                                                                                : (double)NAN,
+                                            .finest = from->finest,
+                                            .seeds = part->seeds};
   option->beyond += option->part[at].beyond;
 }
 
@@ -84,8 +94,8 @@ static double total_of(const struct accuracy_option *option, int64_t seeds) {
   const double student = sample_student((size_t)seeds, 0.95) * option->deviation / sqrt((double)seeds);
   double of_share = option->share ? sample_share_half_width((size_t)seeds, option->mean, option->deviation, 0.95)
                                   : (double)NAN;
-  if (option->share && option->deviation >= 0 && isnan(of_share)) /* equal runs may miss a rare outcome */
-    of_share = accuracy_most(true, option->mean) * (1 - pow(0.05, 1 / (double)seeds));
+  if (option->share && option->deviation >= 0 && isnan(of_share))
+    of_share = left_by_equal(option->mean, seeds);
   return accuracy_resolution(option) + fmax(student, of_share);
 }
 
@@ -100,7 +110,7 @@ static status add_option(struct accuracy_finding *finding, const struct converge
   option->n = row->n;
   option->within = accuracy_allowed(finding->campaign, option->mean);
   for (size_t k = 0; k < finding->part_count; k++)
-    if (finding->parts[k].point == option->point)
+    if (finding->parts[k].part.point == option->point)
       take_part(&finding->parts[k], option);
   const double most = accuracy_most(option->share, option->mean) - option->error;
   if (!option->open) /* a bound has nothing beyond it */
@@ -118,6 +128,28 @@ static status add_option(struct accuracy_finding *finding, const struct converge
   option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
   accuracy->options[accuracy->count++] = *option;
   return STATUS_OK;
+}
+
+/* The first condition that would mark this scene's result and not that of the campaign's scene (finer grains with the
+ * same time step). NULL: none. */
+const struct condition *accuracy_mark(const struct campaign *campaign, const struct scene *scene) {
+  const struct condition *list = scene->kind->conditions;
+  const condition_set marks = condition_before(list, scene->inputs, NULL) &
+                              ~condition_before(list, campaign->scene->inputs, NULL);
+  size_t k = 0;
+  while (marks && !(marks >> k & 1))
+    k++;
+  return marks ? &list[k] : NULL;
+}
+
+/* Work of a run of the campaign's scene with this setting of the knob. NaN: the scene refuses it, or it is marked. */
+static double work_at(const struct campaign *campaign, const struct knob *knob, const char *setting) {
+  struct error ignored;
+  const struct engine_kind *kind = campaign->scene->kind;
+  SCENE scene = scene_copy(campaign->scene);
+  if (!kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK || accuracy_mark(campaign, scene))
+    return NAN;
+  return kind->work(scene->inputs);
 }
 
 /* What a run of an option takes by the study of a point. NaN: it has none. */
@@ -154,7 +186,7 @@ static double mean_cost(const struct accuracy_finding *finding, const struct acc
   for (size_t i = 0; i < finding->place_count; i++) {
     const struct accuracy_place *place = &finding->places[i];
     const double cost = place->scene ? cost_at(finding, place->point, option) : (double)NAN;
-    const double by_own = own_cost(finding, place) / studied, by_work = place->work / ladder_work(finding->scene);
+    const double by_own = own_cost(finding, place) / studied, by_work = place->work / accuracy_work(finding->scene);
     if (isnan(place->work)) /* the scene of the point is refused */
       continue;
     sum += !isnan(cost) ? cost : run_s * (by_own > 0 ? by_own : by_work);
@@ -171,6 +203,8 @@ static status is_marked(struct accuracy_finding *finding, int64_t point, bool *i
   TRY(ask_doubts(finding->store, &level, finding->results, &here, error));
   TRY(ask_doubts(finding->store, &scene, finding->results, &own, error));
   *is = false;
+  if (here.runs == 0) /* of an extrapolated level: those of the finest stay */
+    return STATUS_OK;
   snprintf(finding->marks, sizeof finding->marks, here.count ? "%" PRId64 " of %" PRId64 " runs of the study:" : "",
            here.doubtful, here.runs);
   for (size_t k = 0; k < here.count; k++) {
@@ -183,35 +217,58 @@ static status is_marked(struct accuracy_finding *finding, int64_t point, bool *i
   return STATUS_OK;
 }
 
-/* A level as an option, unless it did not run. Models and parts of one are not chosen by cost. Every knob has the
- * scene's own settings as a level: that with most seeds, own_n, counts. */
+static void note_marked(struct accuracy_finding *finding, const struct knob *knob, const struct convergence_row *row) {
+  struct accuracy *accuracy = finding->accuracy;
+  char setting[STUDY_SETTING];
+  study_show_setting(finding->campaign->scene->kind, knob, row->setting, setting);
+  text_append(accuracy->marked, sizeof accuracy->marked, "%s%s = %s (%s)", *accuracy->marked ? "; " : "", row->knob,
+              setting, finding->marks);
+}
+
+/* A level as an option. */
 static status take_option(struct accuracy_finding *finding, const struct convergence_row *row, int64_t own_n,
                           struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
   const struct knob *knob = accuracy_knob(finding->campaign, row->knob);
+  const bool extrapolated = row->n == 0 && !row->base && isfinite(row->resolution) && !row->open && finding->finest &&
+                            strcmp(finding->finest->knob, row->knob) == 0;
+  if (extrapolated && condition_has(finding->hopeless, row->knob))
+    return STATUS_OK;
+  /* Models and parts of one are not chosen by cost. */
   if (!knob || knob->group == KNOB_MODEL || knob->group == KNOB_PART || !isfinite(row->error) ||
-      !isfinite(row->deviation) || (row->base && row->n < own_n) ||
-      (!row->base && is_varied(finding->campaign, knob, row->setting)))
+      !(isfinite(row->deviation) || extrapolated))
     return STATUS_OK;
+  if (row->reference)
+    finding->finest = row->n > 0 ? row : NULL;
+  bool there = row->base && row->n < own_n; /* every knob has the scene's own settings as a level */
   for (size_t i = 0; row->base && i < accuracy->count; i++)
-    if (accuracy->options[i].own)
-      return STATUS_OK;
+    there |= accuracy->options[i].own;
   bool marked = false;
-  TRY(is_marked(finding, row->point, &marked, error));
-  if (marked && !row->base) {
-    char setting[STUDY_SETTING];
-    study_show_setting(finding->campaign->scene->kind, knob, row->setting, setting);
-    text_append(accuracy->marked, sizeof accuracy->marked, "%s%s = %s (%s)", *accuracy->marked ? "; " : "", row->knob,
-                setting, finding->marks);
-    if (row->reference)
-      text_append(finding->hopeless, sizeof finding->hopeless, "%s%s", *finding->hopeless ? "," : "", row->knob);
+  if (!row->base && accuracy_is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
-  }
-  struct accuracy_option option = {.own = row->base, .open = row->at_least, .error = row->error, .point = row->point};
+  TRY(is_marked(finding, row->point, &marked, error));
+  if (marked && !row->base)
+    note_marked(finding, knob, row);
+  if (marked && !row->base && row->reference)
+    text_append(finding->hopeless, sizeof finding->hopeless, "%s%s", *finding->hopeless ? "," : "", row->knob);
+  if (there || (marked && !row->base))
+    return STATUS_OK;
+
+  struct accuracy_option option = {.own = row->base,
+                                   .extrapolated = extrapolated,
+                                   .open = row->at_least,
+                                   .error = row->error,
+                                   .point = row->point};
   snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
   snprintf(option.knob, sizeof option.knob, "%.63s", row->knob);
-  option.run_s = mean_cost(finding, &option, row->cpu);
-  return add_option(finding, row, &option, error);
+  const struct convergence_row *finest = finding->finest;
+  const double run_s = !extrapolated ? row->cpu
+                                     : finest->cpu * work_at(finding->campaign, knob, row->setting) /
+                                           work_at(finding->campaign, knob, finest->setting);
+  option.run_s = mean_cost(finding, &option, run_s);
+  if (!extrapolated)
+    return add_option(finding, row, &option, error);
+  return option.run_s > 0 ? add_option(finding, finest, &option, error) : STATUS_OK;
 }
 
 static int by_error(const void *a, const void *b) {
@@ -261,6 +318,7 @@ status accuracy_choose_options(struct accuracy_finding *finding, struct error *e
   int64_t own_n = 0; /* most seeds of a level that is the scene's own */
   const struct convergence_row *rows = accuracy_rows(finding, finding->point, &count);
   *finding->hopeless = '\0';
+  finding->finest = NULL;
   for (size_t r = 0; r < count; r++)
     if (rows[r].base && rows[r].n > own_n)
       own_n = rows[r].n;

@@ -20,7 +20,11 @@ struct accuracy_finding {
     double work, own_s;   /* of a run with its own settings; NaN: not known */
   } * places;             /* the first ones; owned */
   size_t place_count, place_room;
-  struct accuracy_part *parts; /* of the scene studied and its levels; owned */
+  struct accuracy_row_part {
+    struct ask_part part; /* without texts */
+    const struct knob *knob;
+    double finest;
+  } * parts; /* of the scene studied and its levels; owned */
   size_t part_count, part_room;
 
   const struct scene *scene;  /* whose study is used; borrowed */
@@ -28,6 +32,7 @@ struct accuracy_finding {
   bool all_studied;           /* every point of the campaign has a study */
   char hopeless[256];         /* knobs whose finest level is marked by its runs: "grains,time_step"; "": none */
   char marks[ACCURACY_MARKS]; /* of the level that becomes an option */
+  const struct convergence_row *finest; /* the reference of the last knob that has one, for levels finer than it */
 };
 
 /* ---- accuracy_read.c ---- */
@@ -35,6 +40,7 @@ struct accuracy_finding {
 const struct knob *accuracy_knob(const struct campaign *campaign, const char *name);
 /* The rows of the study of a scene, by its point. */
 const struct convergence_row *accuracy_rows(const struct accuracy_finding *finding, int64_t point, size_t *count);
+double accuracy_work(const struct scene *scene);
 
 /* ---- accuracy_choose.c ---- */
 
@@ -46,6 +52,11 @@ double accuracy_most(bool share, double mean);
 double accuracy_resolution(const struct accuracy_option *option);
 /* What a setting with this mean may be off. NaN: a time is given, not an accuracy. */
 double accuracy_allowed(const struct campaign *campaign, double mean);
+/* True when the campaign varies an input that this level of the knob sets. */
+bool accuracy_is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting);
+/* The first condition that would mark this scene's result and not that of the campaign's scene (finer grains with the
+ * same time step). NULL: none. */
+const struct condition *accuracy_mark(const struct campaign *campaign, const struct scene *scene);
 
 /* ---- accuracy_advice.c ---- */
 

@@ -13,7 +13,10 @@ static void name_option(const struct campaign *campaign, const struct accuracy_o
                         size_t size) {
   char setting[STUDY_SETTING];
   study_show_setting(campaign->scene->kind, accuracy_knob(campaign, option->knob), option->setting, setting);
-  snprintf(text, size, option->own ? "the scene's own settings" : "%s = %s", option->knob, setting);
+  if (option->own)
+    snprintf(text, size, "the scene's own settings");
+  else
+    snprintf(text, size, "%s = %s", option->knob, setting);
 }
 
 /* "0.02 m/s", "5 % of its mean". Returns text. */
@@ -51,22 +54,28 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
   if (campaign->accuracy_of_value)
     snprintf(share, sizeof share, best->mean == 0 ? " (no share of a mean of 0 allows an error)" : " (%s)",
              text_percent(least / fabs(best->mean), (char[TEXT_PERCENT]){0}));
+  const bool a_guess = best->open && least <= best->within; /* what lies beyond the finest level is not known */
   snprintf(smallest, sizeof smallest,
-           "The smallest error is %s%.2g%s%s%s, with %s, whose mean is %.4g%s (%" PRId64 " seeds)",
-           best->open ? "about " : "", least, unit, share, best->open ? " (a guess, as no limit is seen)" : "", chosen,
-           best->mean, unit, best->n);
+           "The smallest error is %s%.2g%s%s%s, with %s%s mean is %.4g%s (%" PRId64 " seeds)",
+           best->open ? "about " : "", least, unit, share,
+           a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
+           : best->open ? " (a guess, as no limit is seen)"
+                        : "",
+           chosen, best->extrapolated ? ", finer than any run: the finest level's" : ", whose", best->mean, unit,
+           best->n);
   if (best->open && !(least > 0))
     snprintf(smallest, sizeof smallest,
              "No run of the study differs between the settings, which does not tell how far "
              "other runs may be");
   text_append(smallest, sizeof smallest, *accuracy->marked ? ". Levels whose runs are in doubt do not count: %s" : "%s",
               accuracy->marked);
-  return status_fail(error, STATUS_CONTENT,
-                     "accuracy: %s%s%sno setting is known to give %s within %s. %s. %s. You can allow more, or ask for "
-                     "the least error in a time: "
-                     "`clast plan %s --within 10min`",
-                     *accuracy->studied ? "by the study of " : "", accuracy->studied, *accuracy->studied ? ", " : "",
-                     quantity, show_width(campaign, width, sizeof width), smallest, accuracy->advice, path);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "accuracy: %s%s%sno setting %s %s within %s. %s. %s. You can allow more, or ask for the least error in a time: "
+      "`clast plan %s --within 10min`",
+      *accuracy->studied ? "by the study of " : "", accuracy->studied, *accuracy->studied ? ", " : "",
+      a_guess ? "is known to give" : "gives", quantity, show_width(campaign, width, sizeof width), smallest,
+      accuracy->advice, path);
 }
 
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
@@ -91,9 +100,10 @@ static double rounded(bool people, int digits, double number) {
   return people ? strtod(text, NULL) : number;
 }
 
-/* One row per way to run the campaign. */
+/* One row per way to run the campaign: cost of a point against that of the most accurate one. */
 static status print_alternatives(const struct accuracy *accuracy, const struct campaign *campaign,
                                  enum table_format format, FILE *out, struct error *error) {
+  const struct accuracy_option *reference = &accuracy->options[accuracy->reference];
   const bool people = table_for_people(format);
   bool guessed = !people; /* people see the guesses if there are any */
   for (size_t i = 0; i < accuracy->count; i++)
@@ -113,6 +123,7 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   table_column(table, "total", unit);
   table_column(table, "run_cpu", "s");
   table_column(table, "point_cpu", "s");
+  table_column(table, "run_cost", NULL);
   for (size_t i = 0; i < accuracy->count; i++) {
     const struct accuracy_option *option = &accuracy->options[i];
     char setting[STUDY_SETTING], text[UNCERTAINTY_TEXT];
@@ -128,7 +139,9 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
       table_text(table, study_show_error(option->error, option->open, text));
     else
       table_real(table, option->error);
-    table_text(table, option->open ? option->error > 0 ? "at least" : "none seen" : "yes");
+    table_text(table, option->open           ? option->error > 0 ? "at least" : "none seen"
+                      : option->extrapolated ? "extrapolated"
+                                             : "yes");
     if (guessed)
       table_real(table, rounded(people, 2, option->beyond));
     if (option->seeds)
@@ -136,8 +149,9 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
     else
       table_missing(table);
     table_real(table, rounded(people, 2, option->total));
-    table_real(table, rounded(people, 3, option->run_s));
-    table_real(table, rounded(people, 3, option->cpu_s));
+    const double costs[] = {option->run_s, option->cpu_s, option->run_s / reference->run_s};
+    for (size_t c = 0; c < sizeof costs / sizeof costs[0]; c++)
+      table_real(table, rounded(people, 3, costs[c]));
   }
   return table_end(table, error);
 }
@@ -227,14 +241,16 @@ static status alternatives_json(const struct accuracy *accuracy, const struct ca
                                 struct error *error) {
   FILE *out = text_open(json);
   const status code = print_alternatives(accuracy, campaign, TABLE_JSON, out, error);
-  for (double factor = 0.5; factor <= 2 && !isnan(accuracy->point_s); factor *= 2) {
-    bool open; /* column `known` tells it of each option */
-    const double error_then = accuracy_least(accuracy, factor * accuracy->point_s, &open);
-    fprintf(out, isnan(error_then) ? ", \"error_in_%sthe_time\": null" : ", \"error_in_%sthe_time\": %.17g",
-            factor < 1   ? "half_"
-            : factor > 1 ? "twice_"
-                         : "",
-            error_then);
+  if (code == STATUS_OK && !isnan(accuracy->point_s)) {
+    static const struct {
+      const char *name;
+      double factor;
+    } times[] = {{"error_in_half_the_time", 0.5}, {"error_in_the_time", 1}, {"error_in_twice_the_time", 2}};
+    for (size_t i = 0; i < sizeof times / sizeof times[0]; i++) {
+      bool open; /* column `known` tells it of each option */
+      const double error_then = accuracy_least(accuracy, times[i].factor * accuracy->point_s, &open);
+      fprintf(out, isnan(error_then) ? ", \"%s\": null" : ", \"%s\": %.17g", times[i].name, error_then);
+    }
   }
   if (!text_close(out, json) && code == STATUS_OK)
     return status_fail(error, STATUS_MEMORY, "out of memory");
@@ -261,10 +277,15 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
     words_print(stdout, "",
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
-                "point_cpu: by the runs of the study, mean over the points");
+                "point_cpu: by the runs of the study, mean over the points. run_cost: against the smallest error");
     if (*accuracy.marked && accuracy.chosen < accuracy.count)
       words_print(stdout, "", "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: %s",
                   accuracy.marked);
+    if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
+      words_print(stdout, "",
+                  "The chosen setting is finer than any level that was run. Its error is that of the finest level "
+                  "times (its step over that step)^%g, and its cost is by the engine's measure of work.",
+                  LIMIT_ORDER_LEAST);
     putchar('\n');
   }
   return accuracy_apply(&accuracy, campaign, error);

@@ -21,6 +21,10 @@ const struct convergence_row *accuracy_rows(const struct accuracy_finding *findi
   return finding->rows + from;
 }
 
+double accuracy_work(const struct scene *scene) {
+  return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+}
+
 static status out_of_memory(struct error *error) {
   return status_fail(error, STATUS_MEMORY, "no memory for the studies of a campaign");
 }
@@ -47,7 +51,7 @@ static status read_places(struct accuracy_finding *finding, struct error *error)
     if (!grow_room(&finding->places, &finding->place_room, finding->place_count + 1, sizeof *finding->places))
       return out_of_memory(error);
     struct accuracy_place *place = &finding->places[finding->place_count++];
-    *place = (struct accuracy_place){.work = scene ? ladder_work(scene) : (double)NAN, .own_s = NAN};
+    *place = (struct accuracy_place){.work = scene ? accuracy_work(scene) : (double)NAN, .own_s = NAN};
     if (scene)
       TRY(store_point_find(finding->store, scene, &place->point, error));
     accuracy_rows(finding, place->point, &count);
@@ -79,15 +83,10 @@ static status read_parts(struct accuracy_finding *finding, struct error *error) 
   for (struct ask_part part; ask_parts_next(&parts, &part);) {
     if (!grow_room(&finding->parts, &finding->part_room, finding->part_count + 1, sizeof *finding->parts))
       return out_of_memory(error);
-    finding->parts[finding->part_count++] = (struct accuracy_part){.knob = accuracy_knob(finding->campaign, part.knob),
-                                                                   .open = part.open,
-                                                                   .error = part.error,
-                                                                   .left_by_seeds = part.left_by_seeds,
-                                                                   .beyond = part.beyond,
-                                                                   .finest = strtod(part.finest, NULL),
-                                                                   .seeds = part.seeds,
-                                                                   .coarser = part.coarser,
-                                                                   .point = part.point};
+    finding->parts[finding->part_count++] = (struct accuracy_row_part){.part = part,
+                                                                       .knob = accuracy_knob(finding->campaign,
+                                                                                             part.knob),
+                                                                       .finest = strtod(part.finest, NULL)};
   }
   return answer_end(&parts);
 }

@@ -78,11 +78,16 @@ static char *why_unkept(const struct knob *knob, const struct scene *scene) {
   return text_close_small(out, &why);
 }
 
+bool ladder_is_kept(const struct knob *knob, const struct scene *scene) {
+  OWNED char *why = why_unkept(knob, scene);
+  return !*why;
+}
+
 /* Leaves a level out, with a note, when it does not keep what its setting says; where the scene's own one does not
  * either, all stay. */
 static bool is_unkept(const struct making *making, const struct ladder_level *level) {
-  OWNED char *own = why_unkept(making->knob, making->base);
-  OWNED char *why = level->base || *own ? NULL : why_unkept(making->knob, level->scene);
+  OWNED char *why = level->base || !ladder_is_kept(making->knob, making->base) ? NULL
+                                                                               : why_unkept(making->knob, level->scene);
   if (why && *why && making->notes)
     fprintf(making->notes, "%s = %s is left out%s\n", making->rows[0]->path, level->setting, why);
   return why && *why;
@@ -141,13 +146,12 @@ static status add_factors(struct making *making, struct error *error) {
 
 /* ---- named settings ---- */
 
-double ladder_work(const struct scene *scene) {
-  return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+static double work_of(const struct ladder_level *level) {
+  return level->scene->kind->work ? level->scene->kind->work(level->scene->inputs) : 0;
 }
 
 static int by_work(const void *a, const void *b) {
-  const double x = ladder_work(((const struct ladder_level *)a)->scene),
-               y = ladder_work(((const struct ladder_level *)b)->scene);
+  const double x = work_of(a), y = work_of(b);
   return (x > y) - (x < y);
 }
 

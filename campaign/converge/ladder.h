@@ -32,11 +32,12 @@ status ladder_add_own(struct ladder *ladder, const struct scene *base, struct er
 /* Sets all inputs of a knob in a scene, as the level `setting` of its ladder has them. STATUS_CONTENT when the knob
  * does not apply or the scene refuses the value, STATUS_USAGE when it is no value of the input. */
 status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error);
+/* Does the scene have the spacing that its setting of the knob stands for, as far as other inputs do not bind it? */
+bool ladder_is_kept(const struct knob *knob, const struct scene *scene);
+
 /* The value of the knob's first input in a scene, as a level's setting. */
 void ladder_setting(const struct knob *knob, const struct scene *scene, char *text, size_t size);
 
-/* The engine's measure of the work of a run; 1 where it has none. */
-double ladder_work(const struct scene *scene);
 void ladder_clear(struct ladder *ladder);
 
 /* Takes the next word from a comma-separated list. A longer one is cut. False: there is none. */

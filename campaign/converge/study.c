@@ -220,10 +220,47 @@ status study_errors(const struct study *study, size_t from, size_t quantity, str
   return answer_end(&levels);
 }
 
-/* Does the store's study have every level of this one, with more seeds than were asked for now? Then this one would
- * only take runs away, and is not stored. */
-static status is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
-                         bool *smaller, struct error *error) {
+enum { FINER = 3 }; /* levels beyond the finest one */
+
+/* Settings 2, 4 and 8 times finer than the finest level, whose errors follow from the law: its distance to the limit
+ * shrinks at least as the least order. They have no runs; one may be a level that the study had no time for. */
+static status add_finer(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
+                        size_t *count, struct convergence_row *rows, int64_t *points, struct error *error) {
+  const struct knob *knob = ladder->levels.knob;
+  const struct convergence_row *finest = &found->rows[study_reference(ladder)];
+  if (!found->adds || found->limit.verdict != LIMIT_SEEN || finest->n == 0 || !(finest->step > 0))
+    return STATUS_OK;
+  for (int i = 1; i <= FINER; i++) {
+    const double share = pow(pow(2, -i * fabs(knob->step_power)), LIMIT_ORDER_LEAST);
+    struct error refused;
+    SCENE scene = scene_copy(ladder->base);
+    char setting[FIELD_TEXT_SIZE];
+    snprintf(setting, sizeof setting, "%.6g", strtod(finest->setting, NULL) * pow(2, knob->step_power < 0 ? i : -i));
+    if (ladder_turn(knob, scene, setting, &refused) != STATUS_OK || !ladder_is_kept(knob, scene))
+      continue;
+    ladder_setting(knob, scene, setting, sizeof setting); /* as levels spell it */
+    size_t place = 0;
+    while (place < found->count && strcmp(rows[place].setting, setting) != 0)
+      place++;
+    if (place < found->count) {
+      if (isnan(rows[place].resolution))
+        rows[place].resolution = finest->resolution * share;
+      continue;
+    }
+    struct convergence_row *row = &rows[*count];
+    field_defaults(&convergence_table, row);
+    memcpy(row->setting, setting, sizeof row->setting);
+    memcpy(row->knob, finest->knob, sizeof row->knob);
+    memcpy(row->quantity, finest->quantity, sizeof row->quantity);
+    row->step = finest->step * pow(2, -i * fabs(knob->step_power));
+    row->resolution = finest->resolution * share;
+    TRY(store_add_point(store, 0, scene, 0, NULL, &points[(*count)++], error));
+  }
+  return STATUS_OK;
+}
+
+status study_is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
+                        bool *smaller, struct error *error) {
   ANSWER levels = ask_convergence_levels(store, ladder->base_point, ladder->base->kind->results_version,
                                          found->rows[0].quantity, false, error);
   size_t asked = 0, there = 0;
@@ -240,18 +277,24 @@ static status is_smaller(const struct study_ladder *ladder, const struct study_f
 /* Writes the rows of a scene for a quantity. A smaller study does not replace a larger one. */
 static status store_rows(const struct study *study, size_t from, size_t count, const struct study_found *found,
                          struct store *store, struct error *error) {
+  OWNED struct convergence_row *levels = memory_small(KNOB_LEVELS + FINER, sizeof *levels);
   for (size_t i = 0; i < count; i++) {
     const struct study_ladder *ladder = &study->ladder[from + i];
-    const struct store_convergence rows = {.base_point_id = ladder->base_point,
-                                           .results_version = ladder->base->kind->results_version,
-                                           .count = found[i].count,
-                                           .point_ids = ladder->point,
-                                           .rows = found[i].rows,
-                                           .limit = &found[i].limit};
+    int64_t points[KNOB_LEVELS + FINER];
+    struct store_convergence rows = {.base_point_id = ladder->base_point,
+                                     .results_version = ladder->base->kind->results_version,
+                                     .count = found[i].count,
+                                     .point_ids = points,
+                                     .rows = levels,
+                                     .limit = &found[i].limit};
     bool smaller = false;
-    TRY(is_smaller(ladder, &found[i], store, &smaller, error));
-    if (!smaller)
-      TRY(store_set_convergence(store, &rows, error));
+    TRY(study_is_smaller(ladder, &found[i], store, &smaller, error));
+    if (smaller)
+      continue;
+    memcpy(levels, found[i].rows, found[i].count * sizeof *levels);
+    memcpy(points, ladder->point, found[i].count * sizeof *points);
+    TRY(add_finer(ladder, &found[i], store, &rows.count, levels, points, error));
+    TRY(store_set_convergence(store, &rows, error));
   }
   return STATUS_OK;
 }

@@ -85,6 +85,11 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
 status study_errors(const struct study *study, size_t from, size_t quantity, struct store *store, size_t count,
                     struct study_found *found, struct error *error);
 
+/* Does the store's study have every level of this one, with more seeds than were asked for now? Then this one would
+ * only take runs away, and is not stored. */
+status study_is_smaller(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
+                        bool *smaller, struct error *error);
+
 /* The limit of a ladder from all its levels with runs. `place` (KNOB_LEVELS numbers): the index of each level in
  * law->distance; LIMIT_LEVELS for a level that was left out. points: as for limit_infer(). */
 void study_law(const struct study *study, const struct study_ladder *ladder, size_t quantity, struct limit_law *law,

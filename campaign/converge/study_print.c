@@ -28,6 +28,7 @@ status study_print_knobs(const struct engine_kind *kind, enum table_format forma
   return table_end(table, error);
 }
 
+/* What the study prints, and the store of its runs. */
 /* Below the tables for people: a sentence for each column that they show. */
 static const struct {
   const char *column; /* NULL: always shown */
@@ -41,7 +42,7 @@ static const struct {
      "error: how far finer settings may move the mean, summed over all knobs of group resolution, as in `clast "
      "estimates` and `clast plan`; other knobs than that of the row are at *. A knob leaves its largest "
      "distance to the limit by the law of all seeds, which is not this mean minus the limit (none seen: |bias| "
-     "+ half width, which is no bound: >=). none seen: runs of equal seed are equal at all levels, which adds "
+     "+ half width, which is no bound: >=). No difference seen: runs of equal seed are equal at all levels, which adds "
      "nothing; how many other runs may differ is part of the interval over seeds."},
     {"frontier",
      "best: no other studied level of the scene has as small an error for less time, or a smaller one for as little; "
@@ -79,17 +80,18 @@ static status read_doubts(const struct printing *printing, const struct study_la
   return doubts_of(printing, point, printing->study->quantity[quantity].name, doubts, error);
 }
 
-/* Of the runs of all levels, for all quantities. A run of several ladders counts once. */
-static status sum_doubts(const struct printing *printing, struct ask_doubts *sum, struct error *error) {
+/* Of the runs of all levels of the first ladders, for the first quantities. A run of several ladders counts once. */
+static status sum_doubts(const struct printing *printing, size_t ladders, size_t quantities, struct ask_doubts *sum,
+                         struct error *error) {
   const struct study *study = printing->study;
   OWNED char *points = NULL;
   char names[ASK_DOUBTS_RESULTS] = "";
   FILE *text = text_open(&points);
-  for (size_t i = 0; i < study->ladder_count; i++)
+  for (size_t i = 0; i < ladders; i++)
     for (size_t l = 0; l < study->ladder[i].levels.count; l++)
       fprintf(text, "%s%lld", i || l ? "," : "", (long long)study->ladder[i].point[l]);
   text_close_small(text, &points);
-  for (size_t q = 0; q < study->quantity_count; q++)
+  for (size_t q = 0; q < quantities; q++)
     text_append(names, sizeof names, "%s%s", q ? "," : "", study->quantity[q].name);
   return doubts_of(printing, points, names, sum, error);
 }
@@ -190,6 +192,38 @@ static bool find_told(size_t count, const struct study_found *found, size_t *kno
   return told;
 }
 
+/* The change between the two finest levels as one of a doubling, or a halving, of the knob's first input. */
+static void print_change(const struct knob *knob, const struct study_found *found, FILE *out) {
+  const struct convergence_row *row[2] = {NULL, NULL}; /* the two finest levels with runs */
+  char text[UNCERTAINTY_TEXT];
+  for (size_t l = 0; l < found->count; l++)
+    if (found->rows[l].n > 0) {
+      row[0] = row[1];
+      row[1] = &found->rows[l];
+    }
+  const double factor = row[0] ? log(2) * fabs(knob->step_power) / log(row[0]->step / row[1]->step) : 1;
+  const struct limit_range *change = &found->limit.change;
+  uncertainty_number(factor * change->value, factor * (change->high - change->low) / 2, text);
+  fprintf(out, "no limit %s, moving by %s per %s of %s", found->limit.verdict == LIMIT_FALLING ? "inferred" : "seen",
+          text, knob->step_power < 0 ? "doubling" : "halving", knob->inputs[0].path);
+}
+
+/* How many seeds show no difference between the levels of the knob, which adds nothing; 0: some do, it has no two
+ * levels, or it adds something. */
+static int64_t equal_seeds(const struct study_found *found) {
+  int64_t levels = 0, seeds = 0;
+  for (size_t l = 0; l < found->count; l++) {
+    const struct convergence_row *row = &found->rows[l];
+    if (row->n == 0)
+      continue;
+    if (row->bias != 0 || row->bias_half_width != 0 || row->resolution > 0)
+      return 0; /* the law of equal runs may leave a little, which the sum then has */
+    levels++;
+    seeds = row->n;
+  }
+  return found->adds && levels > 1 ? seeds : 0;
+}
+
 static bool has_runs(const struct study_found *found) {
   int64_t n = 0;
   for (size_t l = 0; l < found->count; l++)
@@ -238,10 +272,9 @@ static status print_sentence(const struct printing *printing, size_t from, size_
   ANSWER parts = ask_parts(printing->store, ladder->base_point, ladder->base->kind->results_version,
                            study->quantity[quantity].column, error);
   for (struct ask_part part; ask_parts_next(&parts, &part);) {
-    if (part.point != ladder->point[level] || !(part.error > 0 || (part.open && part.error == 0)))
+    if (part.point != ladder->point[level] || !(part.error > 0 || (part.open && part.error == 0 && told->error > 0)))
       continue;
-    fprintf(out, "%s%s%s%s", before, part.knob, told->error > 0 ? " " : "",
-            told->error > 0 ? study_show_error(part.error, part.open, text) : "");
+    fprintf(out, "%s%s %s", before, part.knob, part.error > 0 ? study_show_error(part.error, part.open, text) : ">= 0");
     sum += part.error;
     before = ", ";
   }
@@ -249,6 +282,13 @@ static status print_sentence(const struct printing *printing, size_t from, size_
   if (sum > (1 + 1e-9) * told->error)
     fputs("; a share cannot move farther", out);
   fprintf(out, "%s%s", *before == ',' ? ")" : "", isfinite(told->error) ? "." : "");
+  before = " No difference seen (seeds): ";
+  for (size_t i = 0; i < count; i++)
+    if (equal_seeds(&found[i]) > 0) {
+      fprintf(out, "%s%s (%" PRId64 ")", before, found[i].rows[0].knob, equal_seeds(&found[i]));
+      before = ", ";
+    }
+  fputs(*before == ',' ? "." : "", out);
   before = " Not studied, and not in this error: ";
   for (size_t i = 0; i < count; i++)
     if (found[i].adds && !has_runs(&found[i])) {
@@ -285,35 +325,58 @@ static bool was_run(const struct study *study, const struct study_ladder *ladder
   return false;
 }
 
-/* The levels without a mean: those whose runs have no usable result, and those that this study does not compare, as it
- * had no time for them or as nobody asked for them. */
+/* Has a run of the level a result? An exponent belongs to all of them. */
+static bool has_result(const struct study *study, const struct study_ladder *ladder, size_t level, size_t quantity) {
+  for (int64_t s = 0; s < study->rule.most_seeds; s++)
+    if (isfinite(ladder->values[quantity][level][s]))
+      return true;
+  return !study->quantity[quantity].row && was_run(study, ladder, level);
+}
+
+/* The levels without a mean, each with its reason: no time, not asked for, or all results withheld or missing. Levels
+ * of a knob that had no time may have results all the same: its own level is one of the other knobs, too, and the store
+ * may have runs. */
 static status print_missing(const struct printing *printing, const struct study_ladder *ladder, size_t quantity,
                             const struct study_found *found, FILE *out, struct error *error) {
   struct ask_doubts here, all = {0};
-  char ran[KNOB_LEVELS * 200] = "", late[sizeof ran] = "", words[256] = "", setting[STUDY_SETTING];
+  char ran[KNOB_LEVELS * 200] = "", words[256] = "";
+  char late[sizeof ran] = "", lone[sizeof ran] = "", setting[STUDY_SETTING];
   for (size_t l = 0; l < found->count; l++) {
     const struct convergence_row *row = &found->rows[l];
     const bool by_law = row->base && !row->open && found->limit.verdict == LIMIT_SEEN;
-    const bool of_study = ladder->seeds > 0 && was_run(printing->study, ladder, l) && !ladder->left_out[l];
-    char *list = of_study ? ran : late;
+    const char *own = by_law ? " *, whose error follows from the law" : row->base ? " *" : "";
     if (row->n > 0)
       continue;
-    text_append(list, sizeof ran, "%s %s%s", *list ? "," : "", show_level(ladder, row, setting),
-                by_law      ? " *, whose error follows from the law"
-                : row->base ? " *"
-                            : "");
-    if (of_study)
+    show_level(ladder, row, setting);
+    if (ladder->seeds == 0 && has_result(printing->study, ladder, l, quantity)) {
+      text_append(lone, sizeof lone, "%s %s%s", *lone ? "," : "", setting, own);
+      continue;
+    }
+    if (was_run(printing->study, ladder, l) && !ladder->left_out[l]) {
       TRY(read_doubts(printing, ladder, l, quantity, &here, error));
-    if (of_study)
+      text_append(ran, sizeof ran, "%s %s%s", *ran ? "," : "", setting, own);
       ask_doubts_add(&all, &here);
+      continue;
+    }
+    if (ladder->levels.level[l].unasked)
+      fprintf(out, "; without %s%s", setting, own);
+    else
+      text_append(late, sizeof late, "%s %s%s", *late ? "," : "; there was no time for", setting, own);
   }
+  fputs(late, out);
   for (size_t k = 0; k < all.count; k++)
     if (all.word[k].row && all.word[k].row->withheld)
-      text_append(words, sizeof words, "%s%s", *words ? ", " : ", withheld: ", all.word[k].word);
-  if (*late)
-    fprintf(out, "; not compared:%s", late);
-  if (*ran)
-    fprintf(out, "; without a usable result%s:%s", words, ran);
+      text_append(words, sizeof words, "%s%s", *words ? ", " : "", all.word[k].word);
+  if (*ran && *words)
+    fprintf(out, "; run, but results are withheld (%s):%s", words, ran);
+  else if (*ran)
+    fprintf(out, "; run, but without a usable result:%s (%s)", ran,
+            printing->study->quantity[quantity].row
+                ? "`clast status` tells how runs ended, `clast explain` when the result is off"
+                : "too few fragments for an exponent: more seeds give more");
+  if (*lone)
+    fprintf(out, "; with results, but a comparison takes two levels with %" PRId64 " seeds:%s",
+            printing->study->rule.first_seeds, lone);
   return STATUS_OK;
 }
 
@@ -321,24 +384,37 @@ static status print_missing(const struct printing *printing, const struct study_
 static status print_limit(const struct printing *printing, const struct study_ladder *ladder, size_t quantity,
                           const struct study_found *found, FILE *out, struct error *error) {
   const struct convergence_limit_row *limit = &found->limit;
+  const struct knob *knob = ladder->levels.knob;
+  char setting[STUDY_SETTING];
+  const char *before = "";
   fprintf(out, "%s: ", limit->knob);
   if (limit->verdict == LIMIT_SEEN)
     print_seen(found, out);
-  else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING)
-    fprintf(out, "no limit %s: the three finest levels do not follow limit + a step^p with p from %g to %g; ",
-            limit->verdict == LIMIT_FALLING ? "inferred, though the changes get smaller" : "seen", LIMIT_ORDER_LEAST,
+  else if (limit->verdict == LIMIT_NOT_SEEN || limit->verdict == LIMIT_FALLING) {
+    print_change(knob, found, out);
+    fputs(limit->verdict == LIMIT_FALLING ? ": the changes get smaller, but" : ":", out);
+    fprintf(out, " the three finest levels do not follow limit + a step^p with p from %g to %g", LIMIT_ORDER_LEAST,
             LIMIT_ORDER_MOST);
-  else if (limit->verdict == LIMIT_CONSTANT)
+    if (!seeds_are_equal(1, found))
+      fprintf(out, " (if they did, chance would put them this far off in %s%s of studies)",
+              limit->fit < 1e-5 ? "less than " : "", text_percent(fmax(limit->fit, 1e-5), (char[TEXT_PERCENT]){0}));
+    fputs("; ", out);
+  } else if (limit->verdict == LIMIT_CONSTANT)
     fprintf(out, "no difference seen, all runs are equal; ");
   else if (!isnan(found->rows[0].step))
     fprintf(out, "no limit inferred, which needs three levels and three seeds; ");
   else if (has_runs(found) && found->rows[0].open)
     fprintf(out, "no law says how far it is from a limit; ");
-  if (limit->verdict == LIMIT_SEEN && limit->dropped > 0)
-    fprintf(out,
-            "the law leaves out the coarsest %" PRId64
-            ", which do not follow it (%.2g with the next one, %.2g without); ",
-            limit->dropped, limit->fit_with, limit->fit);
+  int64_t dropped = limit->verdict == LIMIT_SEEN ? limit->dropped : 0;
+  for (size_t l = 0; l < found->count && dropped > 0; l++)
+    if (found->rows[l].n > 0) {
+      fprintf(out, "%s%s", *before ? ", " : "the law leaves out ", show_level(ladder, &found->rows[l], setting));
+      before = ",";
+      dropped--;
+    }
+  if (*before)
+    fprintf(out, ", as it fits all finer levels (%.2g) and not with the next one (%.2g); ", limit->fit,
+            limit->fit_with);
   fprintf(out, "ended: %s", ladder->end);
   TRY(print_missing(printing, ladder, quantity, found, out, error));
   fputc('\n', out);
@@ -380,10 +456,13 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   const char *unit = what->row ? ask_result_unit(what->row, base->kind->dimensions) : NULL;
   const bool named = unit && strcmp(unit, "1") != 0;
   bool ran = false, any = false; /* with and without a result */
+  bool results = false;          /* of a knob that had no time to compare them */
   for (size_t i = 0; i < count; i++) {
     ran |= has_runs(&found[i]);
-    for (size_t l = 0; l < found[i].count; l++)
+    for (size_t l = 0; l < found[i].count; l++) {
       any |= isfinite(study->ladder[from + i].wall[l]);
+      results |= has_result(study, &study->ladder[from + i], l, quantity);
+    }
   }
   if (from || quantity)
     putchar('\n');
@@ -397,7 +476,9 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   design_axis_show_point(study->varied_count, study->varied, base->inputs, point, sizeof point);
   if (!ran)
     words_print(stdout, "", "%s%s%s: %s", base->name, *point ? ", " : "", point,
-                any ? "no two levels are compared" : "nothing was run in the time given");
+                results ? "no knob has all seeds of two levels, so none is compared"
+                : any   ? "no level has a result"
+                        : "nothing was run in the time given");
   if (!any)
     return STATUS_OK;
   if (ran)
@@ -467,7 +548,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
     return table_end(table, error);
   fflush(stdout);
   struct ask_doubts sum;
-  TRY(sum_doubts(&printing, &sum, error));
+  TRY(sum_doubts(&printing, study->ladder_count, study->quantity_count, &sum, error));
   uncertainty_doubts(&sum, stderr);
   if (quiet)
     return STATUS_OK;

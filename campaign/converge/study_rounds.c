@@ -20,6 +20,10 @@ struct rounds {
   bool probe; /* runs one seed of the cheapest level, because nothing has run yet */
 };
 
+static double work_of(const struct scene *scene) {
+  return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+}
+
 /* Wall time of a run of the level, s: measured, or estimated by the engine's measure of work from other levels of the
  * ladder or from other ladders. NaN: nothing has run. */
 static double predict(const struct rounds *rounds, const struct study_ladder *ladder, size_t level) {
@@ -29,10 +33,10 @@ static double predict(const struct rounds *rounds, const struct study_ladder *la
   for (size_t l = 0; l < ladder->levels.count; l++)
     if (!isnan(ladder->wall[l])) {
       seconds += ladder->wall[l];
-      work += ladder_work(ladder->levels.level[l].scene);
+      work += work_of(ladder->levels.level[l].scene);
     }
   const double rate = work > 0 ? seconds / work : rounds->seconds / rounds->work;
-  return rate * ladder_work(ladder->levels.level[level].scene);
+  return rate * work_of(ladder->levels.level[level].scene);
 }
 
 static double seconds_left(const struct rounds *rounds) {
@@ -208,7 +212,7 @@ static status make_campaign(const struct rounds *rounds, struct campaign **out, 
   const struct ladder_level *level[KNOB_LEVELS];
   size_t axes = 0, points = 0, cheapest = levels->level[0].unasked;
   for (size_t l = cheapest + 1; l < levels->count; l++)
-    if (!levels->level[l].unasked && ladder_work(levels->level[l].scene) < ladder_work(levels->level[cheapest].scene))
+    if (!levels->level[l].unasked && work_of(levels->level[l].scene) < work_of(levels->level[cheapest].scene))
       cheapest = l;
   for (size_t l = 0; l < levels->count; l++)
     if (rounds->probe ? l == cheapest : !rounds->ladder->left_out[l])
@@ -246,7 +250,7 @@ static void learn(struct rounds *rounds) {
       if (isnan(ladder->wall[l]))
         continue;
       rounds->seconds += ladder->wall[l];
-      rounds->work += ladder_work(ladder->levels.level[l].scene);
+      rounds->work += work_of(ladder->levels.level[l].scene);
     }
 }
 
@@ -313,8 +317,8 @@ static void tell_size(struct rounds *rounds) {
             runs > 0 ? "then " : "", (long long)all, all_time);
 }
 
-/* Tells of an earlier study of the same knob that has more seeds. */
-static status tell_larger(const struct rounds *rounds, struct store *store, struct error *error) {
+/* Tells whether the study takes the place of an earlier one of the same knob that has more seeds. */
+static status tell_replaced(const struct rounds *rounds, struct store *store, struct error *error) {
   const struct study *study = rounds->study;
   for (size_t i = 0; !rounds->quiet && i < study->ladder_count; i++) {
     const struct study_ladder *ladder = &study->ladder[i];
@@ -326,12 +330,17 @@ static status tell_larger(const struct rounds *rounds, struct store *store, stru
       if (strcmp(row.knob, knob) == 0 && row.n > before)
         before = row.n;
     TRY(answer_end(&levels));
-    if (before > ladder->seeds && ladder->seeds > 0)
-      fprintf(
-          stderr,
-          "clast: the study of %s in this store has %lld seeds, this one %lld: it takes its place if it has another "
-          "level. --seeds %lld studies with as many\n",
-          knob, (long long)before, (long long)ladder->seeds, (long long)before);
+    if (before <= ladder->seeds || ladder->seeds == 0)
+      continue;
+    struct study_found found;
+    bool smaller;
+    study_find(study, ladder, 0, &found);
+    TRY(study_is_smaller(ladder, &found, store, &smaller, error));
+    fprintf(stderr,
+            "clast: the study of %s in this store has %lld seeds, this one %lld%s. --seeds %lld studies with as many\n",
+            knob, (long long)before, (long long)ladder->seeds,
+            smaller ? " and no other level: the store keeps that one" : ", but another level: it takes its place",
+            (long long)before);
   }
   return STATUS_OK;
 }
@@ -355,7 +364,7 @@ static status next_round(void *context, const struct scheduler *scheduler, struc
   if (!rounds->ladder) {
     for (size_t i = 0; i < study->ladder_count; i++) /* knobs share their own level */
       TRY(study_read(study, &study->ladder[i], scheduler->store, error));
-    TRY(tell_larger(rounds, scheduler->store, error));
+    TRY(tell_replaced(rounds, scheduler->store, error));
     return study_store(study, scheduler->store, error);
   }
   return make_campaign(rounds, campaign, error);

@@ -16,8 +16,8 @@ expect 0 "$clast" run again.yaml
 says "0 runs computed"; says "8 found"
 expect 64 "$clast" run tiny.yaml --set contact.frction=0.3
 says "command line: error: set.contact.frction"; says "contact.friction"
-expect 64 "$clast" run tiny.yaml --set threshold.strain='3 %'
-says "varied"
+expect 0 "$clast" plan tiny.yaml --no-trial --set threshold.strain='3 %' # the later layer wins
+prints "grid, 2 points"
 expect 64 "$clast" run tiny.yaml --set body.diameter=-1
 expect 64 "$clast" run tiny.yaml --set nonsense
 expect 64 "$clast" run tiny.yaml --seeds -1

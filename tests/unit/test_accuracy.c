@@ -154,6 +154,29 @@ TEST(the_cheapest_that_reaches_it) {
   campaign_free(campaign);
 }
 
+/* A law goes on beyond the finest level: with order 0.5 at least, at a cost by the engine's measure of work. */
+TEST(finer_than_any_level) {
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
+  struct store *store = NULL;
+  OWNED_BY(accuracy_clear) struct accuracy accuracy;
+  OK(store_open_writer(fixture_path(path, "finer"), &store, NULL, 0, &error));
+  add_study(store, campaign, "time_step", 4,
+            (const struct level[]){{"2e-6", 0.03, 1e-4, 5, false, false, 2e-6},
+                                   {"1e-6", 0.02, 1e-4, 10, true, false, 1e-6},
+                                   {"5e-07", 0.02 * sqrt(0.5), NAN, NAN, false, false, 5e-7},
+                                   {"2.5e-07", 0.02 * 0.5, NAN, NAN, false, false, 2.5e-7}});
+  add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.005, 1e-4, 10, true, false, 0}});
+  OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
+  assert_int_equal(accuracy.count, 4);
+  const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
+  assert_true(chosen->extrapolated && !chosen->own); /* 0.005 + 0.02 sqrt(1/2) = 0.0191 is within 0.02; no level is */
+  assert_string_equal(chosen->setting, "5e-07");
+  assert_true(fabs(chosen->error - (0.005 + 0.02 * sqrt(0.5))) < 1e-12);
+  assert_true(chosen->run_s > 15 && chosen->run_s < 25);
+  OK(accuracy_apply(&accuracy, campaign, &error));
+}
+
 /* `within: 5 %` is 5 % of the mean that a setting gives, not of that with the scene's own ones. The mean of the finer
  * level is three times as large, so that its error is small enough; where the own mean is the larger one, the cheaper
  * level with the same error is not near enough. */
@@ -179,8 +202,7 @@ TEST(a_share_is_one_of_the_settings_own_mean) {
   }
 }
 
-/* No error of a share is larger than its distance from the farther end, here 0.7. Settings that nothing ran are
- * no choice. */
+/* No error of a share is larger than its distance from the farther end, here 0.7: also of settings that nothing ran. */
 TEST(no_error_is_larger_than_a_share_can_move) {
   CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
@@ -194,7 +216,7 @@ TEST(no_error_is_larger_than_a_share_can_move) {
   add_study(store, campaign, "grains", 1, (const struct level[]){{"0.01069", 0.5, 1e-4, 10, true, false, 0}});
   OK(store_close(store, &error));
   OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
-  assert_int_equal(accuracy.count, 2);
+  assert_int_equal(accuracy.count, 3);
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(fabs(accuracy.options[i].error - (strcmp(accuracy.options[i].setting, "2e-6") ? 0.7 : 0.6)) < 1e-12);
   assert_string_equal(accuracy.options[accuracy.reference].setting, "2e-6"); /* by the number, as the table shows it */
@@ -272,7 +294,7 @@ TEST(every_setting_has_the_parts_of_all_knobs) {
   }
 }
 
-/* The study that needs most decides for all points. The advised one has all its levels. */
+/* The study that needs most decides for all points. Its levels take the place of advised ones that are within 2 %. */
 TEST(the_point_that_needs_most_decides) {
   for (int hard = 0; hard < 2; hard++) {
     OWNED_BY(accuracy_clear) struct accuracy accuracy;
@@ -294,7 +316,7 @@ TEST(the_point_that_needs_most_decides) {
     campaign->accuracy_within = 0.04;
     OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
     assert_true(accuracy.chosen == accuracy.count && strstr(accuracy.studied, hard ? "point 2" : "point 1"));
-    assert_non_null(strstr(accuracy.advice, "--knob grains=0.01507m,0.01069m,0.00759m,0.003795m"));
+    assert_non_null(strstr(accuracy.advice, "--knob grains=0.01507m,0.00759m,0.003795m,0.01069m"));
   }
 }
 
@@ -378,7 +400,8 @@ TEST(an_own_level_that_did_not_run) {
     campaign->accuracy_within = 1e-3; /* the advice goes on with these levels, which are the user's own */
     accuracy_clear(&accuracy);
     OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
-    assert_true(coarser || strstr(accuracy.advice, "--knob time_step=8e-6s,4e-6s,2e-6s,1e-6s,5e-7s --seeds 10`"));
+    assert_true(coarser || (strstr(accuracy.advice, "The study had no time for time_step = 1e-6, 5e-7: ") &&
+                            strstr(accuracy.advice, "--knob time_step=8e-6s,4e-6s,2e-6s,1e-6s,5e-7s` goes on")));
   }
 }
 
@@ -401,19 +424,32 @@ TEST(a_knob_of_two_levels_that_moves_stops_the_answer) {
   }
 }
 
-/* Grains with a time step above a quarter of the longest stable one (engine/dem/scene/conditions.c) are marked: at
- * 0.004 m it is 0.28 of it, and advice of these says so. */
-TEST(advice_of_levels_that_would_be_marked) {
-  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.001}\n");
+/* Grains finer than any level, with the same time step: those whose step is above a quarter of the longest stable one
+ * (engine/dem/scene/conditions.c) would be marked, so they are no options. With 0.0056 m it is a
+ * fifth. */
+TEST(a_finer_setting_that_would_be_marked_is_none) {
+  CAMPAIGN campaign = campaign_of(HEAD "accuracy: {within: 0.02}\n");
   struct store *store = NULL;
+  struct accuracy accuracy;
   OK(store_open_writer(fixture_path(path, "grains"), &store, NULL, 0, &error));
-  add_study(store, campaign, "grains", 2,
+  add_study(store, campaign, "grains", 5,
             (const struct level[]){{"0.0112", 0.03, 1e-4, 5, true, false, 0.0112},
-                                   {"0.008", 0.02, 1e-4, 10, false, false, 0.008}});
+                                   {"0.008", 0.02, 1e-4, 10, false, false, 0.008},
+                                   {"0.0056", 0.014, NAN, NAN, false, false, 0.0056},
+                                   {"0.002", 0.01, NAN, NAN, false, false, 0.002},
+                                   {"0.001", 0.007, NAN, NAN, false, false, 0.001}});
   OK(store_close(store, &error));
+  OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
+  assert_int_equal(accuracy.count, 3);
+  for (size_t i = 0; i < accuracy.count; i++)
+    assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.0056") == 0);
+  accuracy_clear(&accuracy);
+  /* Advice of finer levels tells that they need a shorter step: at 0.004 m it is 0.28 of the stable one. */
+  campaign->accuracy_within = 0.001;
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "in doubt (step) and not count: give a fidelity.time_step of a tenth"));
-  assert_non_null(strstr(error.message, "`clast converge t.yaml --knob grains=0.0112m,0.008m,0.004m --seeds 10`"));
+  assert_non_null(
+      strstr(error.message, "`clast converge t.yaml --knob grains=0.016m,0.008m,0.004m,0.01069m --seeds 10`"));
 }
 
 /* A later study of the grains lacks the scene's own: no setting with these grains is known to be accurate, though the
