@@ -361,4 +361,4 @@ grep -qF '(box)' out || fail "box withholds the undamaged mass"
 sed 's/^name: .*/name: another/' "my scene.yaml" >my_scene.yaml
 expect 0 "$clast" explain "my scene.yaml"
 grep -q '^disruption' out || fail "explains another file"
-done_after 131
+done_after 132
