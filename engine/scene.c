@@ -450,12 +450,13 @@ static const struct engine_kind *read_engine(document_node *root) {
   document_node *engine = document_key(root, "engine");
   if (!engine) {
     document_node *scene = document_key(root, "scene");
+    char word[TEXT_WORD];
     if (scene && document_scalar(scene))
       document_report(
           root, "engine",
-          "is missing: this looks like a campaign of the scene %.60s. `clast explain %.60s` explains the scene, "
+          "is missing: this looks like a campaign of the scene %.60s. `clast explain %.80s` explains the scene, "
           "`clast plan FILE` tells what the campaign runs",
-          document_scalar(scene), document_scalar(scene));
+          document_scalar(scene), text_word(document_scalar(scene), word));
     else
       document_report(root, "engine",
                       document_key(root, "material") || document_key(root, "like")

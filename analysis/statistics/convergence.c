@@ -102,8 +102,11 @@ static void resolve(struct convergence_row *level, const struct limit_range *dis
 void convergence_resolve(size_t count, struct convergence_row *levels, const struct limit_law *law, const size_t *place,
                          bool choices) {
   bool moves = false; /* do levels differ? */
-  for (size_t l = 0; l < count; l++)
+  size_t ran = 0;
+  for (size_t l = 0; l < count; l++) {
+    ran += levels[l].n > 0;
     moves |= levels[l].n > 0 && fabs(levels[l].bias) + levels[l].bias_half_width > 0;
+  }
   double coarser = NOTHING; /* |bias| and half width of the last level before the reference */
   for (size_t l = 0; l < count; l++) {
     struct convergence_row *level = &levels[l];
@@ -119,7 +122,7 @@ void convergence_resolve(size_t count, struct convergence_row *levels, const str
         if (fabs(level->bias - levels[finer].bias) > level->resolution && levels[finer].n > 0)
           level->resolution = fabs(level->bias - levels[finer].bias);
     } else
-      level->resolution = endless ? coarser : 0;
+      level->resolution = endless ? coarser : ran > 1 ? 0 : NOTHING; /* one level has nothing to be compared with */
     if (!level->reference && isfinite(level->bias_half_width))
       coarser = fabs(level->bias) + level->bias_half_width;
   }

@@ -588,7 +588,7 @@ bool limit_infer(const struct limit_ladder *ladder, double confidence, struct li
     return false;
   struct data *data = &work->data;
   read_data(ladder, data);
-  if (data->seeds >= LIMIT_FEWEST_SEEDS && is_constant(data))
+  if (data->seeds >= LIMIT_FEWEST_SEEDS && data->levels > 1 && is_constant(data))
     law->verdict = LIMIT_CONSTANT;
   else if (data->seeds >= LIMIT_FEWEST_SEEDS && has_steps(data)) {
     find_law(ladder, work, rejected, law);

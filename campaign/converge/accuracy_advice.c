@@ -31,13 +31,75 @@ static double finest_of(const struct campaign *campaign, const struct accuracy_p
   return strtod(own, NULL);
 }
 
+/* A finer setting of another knob of resolution, with which a level is not in doubt. */
+struct remedy {
+  const struct knob *knob; /* NULL: none helps */
+  char setting[64];
+};
+
 /* The condition that marks the next finer level of the knob. NULL: none does. */
-static const struct condition *mark_of_finer(const struct accuracy_finding *finding, const struct accuracy_part *part) {
+static const struct condition *mark_of_finer(const struct accuracy_finding *finding, const struct accuracy_part *part,
+                                             struct remedy *remedy) {
+  enum { HALVINGS = 10 };
+  const struct campaign *campaign = finding->campaign;
   struct error ignored;
-  char finer[64];
-  SCENE scene = scene_copy(finding->campaign->scene);
-  snprintf(finer, sizeof finer, "%.6g", finest_of(finding->campaign, part) * finer_by(part->knob));
-  return ladder_turn(part->knob, scene, finer, &ignored) == STATUS_OK ? accuracy_mark(finding->campaign, scene) : NULL;
+  char finer[64], own[64];
+  SCENE level = scene_copy(campaign->scene);
+  *remedy = (struct remedy){.knob = NULL};
+  snprintf(finer, sizeof finer, "%.6g", finest_of(campaign, part) * finer_by(part->knob));
+  const struct condition *mark = ladder_turn(part->knob, level, finer, &ignored) == STATUS_OK
+                                     ? accuracy_mark(campaign, level)
+                                     : NULL;
+  for (const struct knob *other = campaign->scene->kind->knobs; mark && other->name; other++) {
+    if (other == part->knob || other->group != KNOB_RESOLUTION || !(other->step_power > 0) ||
+        accuracy_is_varied(campaign, other, ""))
+      continue;
+    ladder_setting(other, campaign->scene, own, sizeof own);
+    for (int h = 1; h <= HALVINGS && !remedy->knob; h++) {
+      SCENE scene = scene_copy(level);
+      snprintf(remedy->setting, sizeof remedy->setting, "%.6g", ldexp(strtod(own, NULL), -h));
+      if (ladder_turn(other, scene, remedy->setting, &ignored) == STATUS_OK && !accuracy_mark(campaign, scene))
+        remedy->knob = other;
+    }
+  }
+  return mark;
+}
+
+/* Has the store the next finer level of the knob, studied from settings with the remedy? */
+static bool is_studied(const struct accuracy_finding *finding, const struct accuracy_part *part,
+                       const struct remedy *remedy) {
+  struct error ignored;
+  int64_t point = 0;
+  bool is = false;
+  size_t count;
+  const double finer = finer_by(part->knob), wanted = finest_of(finding->campaign, part) * finer;
+  SCENE scene = scene_copy(finding->scene);
+  if (ladder_turn(remedy->knob, scene, remedy->setting, &ignored) != STATUS_OK ||
+      store_point_find(finding->store, scene, &point, &ignored) != STATUS_OK || !point)
+    return false;
+  const struct convergence_row *rows = accuracy_rows(finding, point, &count);
+  for (size_t r = 0; r < count; r++)
+    is |= strcmp(rows[r].knob, part->knob->name) == 0 && rows[r].n > 0 &&
+          (strtod(rows[r].setting, NULL) - wanted) * (finer - 1) >= -1e-5 * wanted; /* as fine or finer */
+  return is;
+}
+
+/* Appends the words of a command with --set of the remedy, in the place of one of its input. */
+static void append_words(const struct accuracy_finding *finding, const struct remedy *remedy, char *text, size_t size) {
+  static const char set[] = " --set ";
+  const char *path = remedy->knob ? remedy->knob->inputs[0].path : "";
+  const size_t length = strlen(path);
+  for (const char *at = finding->accuracy->path; *at;) {
+    const char *word = at + strlen(set), *next = strstr(at + 1, set);
+    const bool is_set = strncmp(at, set, strlen(set)) == 0, quoted = is_set && *word == '\'';
+    if (length && is_set && strncmp(word + quoted, path, length) == 0 && word[quoted + length] == '=')
+      at = word + quoted + strcspn(word + quoted, quoted ? "'" : " ") + quoted;
+    text_append(text, size, "%.*s", (int)(next ? next - at : (ptrdiff_t)strlen(at)), at);
+    at = next ? next : "";
+  }
+  if (length)
+    text_append(text, size, " --set %s='%s%s%s'", path, remedy->setting,
+                *unit_of(finding->campaign, remedy->knob) ? " " : "", unit_of(finding->campaign, remedy->knob));
 }
 
 /* Appends a level to a list unless it is there already: a level of the study within 2 % takes its place. */
@@ -67,20 +129,32 @@ static void append_level(const struct accuracy_finding *finding, const struct kn
 static void append_study(const struct accuracy_finding *finding, const struct accuracy_part *part, char *next,
                          size_t size) {
   const struct knob *knob = part->knob;
-  const struct condition *mark = mark_of_finer(finding, part);
+  struct remedy remedy;
+  const struct condition *mark = mark_of_finer(finding, part, &remedy);
   const double finer = finer_by(knob), value = finest_of(finding->campaign, part);
   char own[64], list[512] = "";
   ladder_setting(knob, finding->campaign->scene, own, sizeof own);
+  if (mark && !remedy.knob) {
+    text_append(next, size, ", but their runs would be in doubt (clast explain %s) and not count", mark->word);
+    return;
+  }
+  if (mark && is_studied(finding, part, &remedy)) {
+    text_append(next, size, ". The store has them from other settings on: `clast plan ");
+    append_words(finding, &remedy, next, size);
+    text_append(next, size, "` goes on there");
+    return;
+  }
   if (mark)
     text_append(next, size,
-                ", but their runs would be in doubt (%s) and not count: %s, with --set here and in later "
-                "commands",
-                mark->word, mark->remedy ? mark->remedy : mark->doubt);
+                ", with the --set of this command here and in later ones, or in `set` of the campaign: else their runs "
+                "are in doubt (clast explain %s) and do not count",
+                mark->word);
   const double levels[] = {value / finer, value, value * finer, strtod(own, NULL)};
   for (size_t i = 0; i < 4 && value > 0; i++)
     append_level(finding, knob, levels[i], list, sizeof list);
-  text_append(next, size, ": `clast converge %s --knob %s%s%s", finding->accuracy->path, knob->name, *list ? "=" : "",
-              list);
+  text_append(next, size, ": `clast converge ");
+  append_words(finding, &remedy, next, size);
+  text_append(next, size, " --knob %s%s%s", knob->name, *list ? "=" : "", list);
   if (part->seeds > FIRST_SEEDS) /* not fewer than the study has */
     text_append(next, size, " --seeds %lld", (long long)part->seeds);
   text_append(next, size, "`");
@@ -88,7 +162,8 @@ static void append_study(const struct accuracy_finding *finding, const struct ac
 
 /* Have runs told that finer levels of the knob are in doubt, for a reason that is not known before them? */
 static bool is_hopeless(const struct accuracy_finding *finding, const struct accuracy_part *part) {
-  return condition_has(finding->hopeless, part->knob->name) && !mark_of_finer(finding, part);
+  struct remedy remedy;
+  return condition_has(finding->hopeless, part->knob->name) && !(mark_of_finer(finding, part, &remedy) && remedy.knob);
 }
 
 /* With what the slowest law leaves beyond the levels. */

@@ -282,10 +282,11 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
       words_print(stdout, "", "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: %s",
                   accuracy.marked);
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
-      words_print(stdout, "",
-                  "The chosen setting is finer than any level that was run. Its error is that of the finest level "
-                  "times (its step over that step)^%g, and its cost is by the engine's measure of work.",
-                  LIMIT_ORDER_LEAST);
+      words_print(
+          stdout, "",
+          "The chosen setting is finer than any level that was run. The part of its knob in the error is that of the "
+          "finest level times (its step over that step)^%g, and its cost is by the engine's measure of work.",
+          LIMIT_ORDER_LEAST);
     putchar('\n');
   }
   return accuracy_apply(&accuracy, campaign, error);

@@ -574,8 +574,9 @@ YAML
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,2mm --seeds 3 --within off
 expect 65 "$clast" plan coarse.yaml
 says "Levels whose runs are in doubt do not count: grains = 0.002 m (3 of 3 runs of the study: step"
-says "their runs would be in doubt (step) and not count: give a fidelity.time_step of a tenth of the stable step, with --set here"
-says "\`clast converge coarse.yaml --knob grains=0.004m,0.002m,0.001m,0.01069m\`"
+says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob grains=0.004m,0.002m,0.001m,0.01069m\`"
+expect 65 "$clast" plan coarse.yaml --set 'fidelity.time_step=1 us'
+says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob" # one --set of an input
 sed 's/within: 0.01/within: 0.9/' coarse.yaml >wide.yaml
 expect 0 "$clast" plan wide.yaml --no-trial
 prints "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: grains = 0.002"
@@ -730,4 +731,4 @@ printf 'engine: command\nname: dies\ncommand:\n  program: /bin/false\n  version:
     n: {kind: count, default: 8, least: 2, most: 99, resolution: larger, doc: Number.}\n  results: {x: {doc: Result.}}\n' >dies.yaml
 expect 1 timeout 60 "$clast" converge dies.yaml --allow-commands -Q x --seeds 2
 says "ended without a result"
-done_after 186
+done_after 187

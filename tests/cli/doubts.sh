@@ -361,4 +361,7 @@ grep -qF '(box)' out || fail "box withholds the undamaged mass"
 sed 's/^name: .*/name: another/' "my scene.yaml" >my_scene.yaml
 expect 0 "$clast" explain "my scene.yaml"
 grep -q '^disruption' out || fail "explains another file"
-done_after 132
+printf 'name: odd\nscene: my scene.yaml\n' >odd.yaml
+expect 65 "$clast" explain odd.yaml
+tr '\n' ' ' <err | grep -qF "\`clast explain 'my scene.yaml'\` explains the scene" || fail "advice without quotes"
+done_after 133

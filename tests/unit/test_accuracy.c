@@ -444,12 +444,20 @@ TEST(a_finer_setting_that_would_be_marked_is_none) {
   for (size_t i = 0; i < accuracy.count; i++)
     assert_true(!accuracy.options[i].extrapolated || strcmp(accuracy.options[i].setting, "0.0056") == 0);
   accuracy_clear(&accuracy);
-  /* Advice of finer levels tells that they need a shorter step: at 0.004 m it is 0.28 of the stable one. */
+  /* Advice of finer levels has the shorter step that they need: at 0.004 m it is 0.28 of the stable one. */
   campaign->accuracy_within = 0.001;
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "in doubt (step) and not count: give a fidelity.time_step of a tenth"));
-  assert_non_null(
-      strstr(error.message, "`clast converge t.yaml --knob grains=0.016m,0.008m,0.004m,0.01069m --seeds 10`"));
+  assert_non_null(strstr(error.message, "clast converge t.yaml --set fidelity.time_step='5e-07 s' --knob "
+                                        "grains=0.016m,0.008m,0.004m,0.01069m --seeds 10`"));
+  /* With that study in the store it is not advised again. */
+  CAMPAIGN shorter = campaign_of(HEAD "set: {fidelity.time_step: 5e-07 s}\naccuracy: {within: 0.001}\n");
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  add_study(store, shorter, "grains", 2,
+            (const struct level[]){{"0.008", 0.02, 1e-4, 5, true, false, 0.008},
+                                   {"0.004", 0.01, 1e-4, 10, false, false, 0.004}});
+  OK(store_close(store, &error));
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "`clast plan t.yaml --set fidelity.time_step='5e-07 s'` goes on there"));
 }
 
 /* A later study of the grains lacks the scene's own: no setting with these grains is known to be accurate, though the
