@@ -718,7 +718,7 @@ static double three_digits_up(double half_width) {
 static status draw_tiles(struct store *store, const struct quantity *quantity, size_t count,
                          const struct picture_tile *tile, const struct panels *panels, const struct row *widest,
                          const struct picture_page *page, struct error *error) {
-  char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1100];
+  char x[CHARTS_LABEL], y[CHARTS_LABEL], z[CHARTS_LABEL], title[ASK_GROUP_POOLED + 3 * CHARTS_LABEL], caption[1200];
   char made[ASK_GROUP_POOLED + 60], intervals[600], resolution[400], scene[CHARTS_LABEL];
   const char *label[MOST_PANELS];
   for (size_t p = 0; p < panels->count; p++)
