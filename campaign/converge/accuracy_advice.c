@@ -44,21 +44,21 @@ static const struct condition *mark_of_finer(const struct accuracy_finding *find
   const struct campaign *campaign = finding->campaign;
   struct error ignored;
   char finer[64], own[64];
-  SCENE level = scene_copy(campaign->scene);
+  SCENE level = scene_copy(finding->scene);
   *remedy = (struct remedy){.knob = NULL};
   snprintf(finer, sizeof finer, "%.6g", finest_of(campaign, part) * finer_by(part->knob));
   const struct condition *mark = ladder_turn(part->knob, level, finer, &ignored) == STATUS_OK
-                                     ? accuracy_mark(campaign, level)
+                                     ? accuracy_mark(finding->scene, level)
                                      : NULL;
   for (const struct knob *other = campaign->scene->kind->knobs; mark && other->name; other++) {
     if (other == part->knob || other->group != KNOB_RESOLUTION || !(other->step_power > 0) ||
         accuracy_is_varied(campaign, other, ""))
       continue;
-    ladder_setting(other, campaign->scene, own, sizeof own);
+    ladder_setting(other, finding->scene, own, sizeof own);
     for (int h = 1; h <= HALVINGS && !remedy->knob; h++) {
       SCENE scene = scene_copy(level);
       snprintf(remedy->setting, sizeof remedy->setting, "%.6g", ldexp(strtod(own, NULL), -h));
-      if (ladder_turn(other, scene, remedy->setting, &ignored) == STATUS_OK && !accuracy_mark(campaign, scene))
+      if (ladder_turn(other, scene, remedy->setting, &ignored) == STATUS_OK && !accuracy_mark(finding->scene, scene))
         remedy->knob = other;
     }
   }

@@ -130,26 +130,25 @@ static status add_option(struct accuracy_finding *finding, const struct converge
   return STATUS_OK;
 }
 
-/* The first condition that would mark this scene's result and not that of the campaign's scene (finer grains with the
- * same time step). NULL: none. */
-const struct condition *accuracy_mark(const struct campaign *campaign, const struct scene *scene) {
+/* The first condition that would mark this scene's result and not that of the studied one (finer grains with the same
+ * time step). NULL: none. */
+const struct condition *accuracy_mark(const struct scene *studied, const struct scene *scene) {
   const struct condition *list = scene->kind->conditions;
   const condition_set marks = condition_before(list, scene->inputs, NULL) &
-                              ~condition_before(list, campaign->scene->inputs, NULL);
+                              ~condition_before(list, studied->inputs, NULL);
   size_t k = 0;
   while (marks && !(marks >> k & 1))
     k++;
   return marks ? &list[k] : NULL;
 }
 
-/* Work of a run of the campaign's scene with this setting of the knob. NaN: the scene refuses it, or it is marked. */
-static double work_at(const struct campaign *campaign, const struct knob *knob, const char *setting) {
+/* Work of a run of the studied scene with this setting of the knob. NaN: the scene refuses it, or it is marked. */
+static double work_at(const struct scene *studied, const struct knob *knob, const char *setting) {
   struct error ignored;
-  const struct engine_kind *kind = campaign->scene->kind;
-  SCENE scene = scene_copy(campaign->scene);
-  if (!kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK || accuracy_mark(campaign, scene))
+  SCENE scene = scene_copy(studied);
+  if (!scene->kind->work || ladder_turn(knob, scene, setting, &ignored) != STATUS_OK || accuracy_mark(studied, scene))
     return NAN;
-  return kind->work(scene->inputs);
+  return scene->kind->work(scene->inputs);
 }
 
 /* What a run of an option takes by the study of a point. NaN: it has none. */
@@ -263,8 +262,8 @@ static status take_option(struct accuracy_finding *finding, const struct converg
   snprintf(option.knob, sizeof option.knob, "%.63s", row->knob);
   const struct convergence_row *finest = finding->finest;
   const double run_s = !extrapolated ? row->cpu
-                                     : finest->cpu * work_at(finding->campaign, knob, row->setting) /
-                                           work_at(finding->campaign, knob, finest->setting);
+                                     : finest->cpu * work_at(finding->scene, knob, row->setting) /
+                                           work_at(finding->scene, knob, finest->setting);
   option.run_s = mean_cost(finding, &option, run_s);
   if (!extrapolated)
     return add_option(finding, row, &option, error);

@@ -54,9 +54,9 @@ double accuracy_resolution(const struct accuracy_option *option);
 double accuracy_allowed(const struct campaign *campaign, double mean);
 /* True when the campaign varies an input that this level of the knob sets. */
 bool accuracy_is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting);
-/* The first condition that would mark this scene's result and not that of the campaign's scene (finer grains with the
- * same time step). NULL: none. */
-const struct condition *accuracy_mark(const struct campaign *campaign, const struct scene *scene);
+/* The first condition that would mark this scene's result and not that of the studied one (finer grains with the same
+ * time step). NULL: none. */
+const struct condition *accuracy_mark(const struct scene *studied, const struct scene *scene);
 
 /* ---- accuracy_advice.c ---- */
 
