@@ -627,7 +627,7 @@ static void tell_changing(const struct quantity *quantity, const char *drawn, ch
 
 /* Why no value has an interval. */
 static const char *no_interval(const struct quantity *quantity) {
-  return quantity->exponent ? "too few runs or fragments" : "one run a point";
+  return quantity->exponent ? "too few runs or fragments" : "no point has two runs that differ";
 }
 
 /* Takes the rows of a quantity as lines and draws them. */

@@ -273,7 +273,7 @@ expect 0 "$clast" map small.db m.svg --y threshold.strain
 says "first other inputs that were varied: --x angle"
 # One run a point has no interval; one that ends with the range is told by its ends.
 expect 0 "$clast" plot small.db one.svg -x strain --by angle --where 'replicate < 1' --keep-script
-grep -q 'No error bars: one run a point' one.gp || fail "error bars of one run"
+grep -q 'No error bars: no point has two runs that differ' one.gp || fail "error bars of one run"
 # An axis that nobody named is an input of all points: of two scenes in one store, none of one scene alone. Lines and panels
 # have few values.
 two_scenes scenes.db

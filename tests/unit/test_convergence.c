@@ -102,6 +102,25 @@ TEST(resolutions) {
 }
 
 /* The scene's own level without runs has the error of the law at its step; beyond the law, the largest and no bound. */
+/* With one level that has runs nothing is compared: its runs may be equal, and the knob is not known to have no effect.
+ */
+TEST(one_level_tells_nothing) {
+  for (int with_step = 0; with_step < 2; with_step++) {
+    const double equal[4] = {0.4, 0.4, 0.4, 0.4};
+    const double step = with_step ? 1 : NAN;
+    struct convergence_row level[2] = {{.step = 2 * step, .mean = NAN, .bias = NAN, .bias_half_width = NAN},
+                                       {.step = step, .n = 4, .mean = 0.4, .reference = true}};
+    static const size_t place[2] = {LIMIT_LEVELS, 0};
+    const struct limit_ladder ladder =
+        {.levels = 1, .seeds = 4, .step = {1}, .values = {equal}, .least = -HUGE_VAL, .most = HUGE_VAL};
+    struct limit_law law;
+    assert_true(limit_infer(&ladder, 0.95, &law, 0, NULL));
+    assert_int_equal(law.verdict, LIMIT_TOO_FEW);
+    convergence_resolve(2, level, &law, place, false);
+    assert_true(isnan(level[1].resolution));
+  }
+}
+
 TEST(own_level_without_runs) {
   const size_t place[] = {0, LIMIT_LEVELS, 1, 2};
   const struct limit_point own = {.step = 0.8, .distance = {0.1, -0.02, 0.2}};

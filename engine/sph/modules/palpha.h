@@ -457,8 +457,7 @@ INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
           .doc = "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows."),
     PORES(elastic_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED,
           .doc = "P_e: above this pressure pores close and stay closed. With fewer pores than the curve begins with "
-                 "(alpha_0 "
-                 "below alpha_e) they close from a higher one on, which clast explain SCENE prints.",
+                 "(alpha_0 below alpha_e) they close from a higher one on, which clast explain SCENE prints.",
           .source = "Jutzi, Benz & Michel 2008"),
     PORES(solid_pressure, "Pa", 0, 1e15, .flags = FIELD_REQUIRED | FIELD_ABOVE_MINIMUM,
           .doc = "P_s: above this pressure all pores are closed.", .source = "Jutzi, Benz & Michel 2008"),
