@@ -109,6 +109,9 @@ status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct 
 status picture_cloud_read_column(const char *path, const struct picture_cloud *cloud, const char *name, double **values,
                                  char unit[32], struct error *error);
 
+/* Why a particle or a layer has no value; only the pressure lacks some. */
+#define PICTURE_BROKEN "broken matter, which bears no tension"
+
 /* Reads one column of the profile along the axis ("depth", "distention", "damage", "pressure", "velocity"): *rows
  * values in *values (malloc'd), and their unit. STATUS_CONTENT when the file has no such column. */
 status picture_cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32],

@@ -440,7 +440,7 @@ static void note(cairo_t *cairo, const struct scene *s, double left, double y, d
   for (size_t k = 0; s->cloud->value && k < s->discs; k++)
     grey += isfinite(s->cloud->value[s->disc[k].id]) ? 0u : 1u;
   if (grey)
-    text_append(text, sizeof text, "Grey: broken matter, which bears no tension. ");
+    text_append(text, sizeof text, "Grey: " PICTURE_BROKEN ". ");
   if (s->left_out)
     text_append(text, sizeof text,
                 s->left_out == 1 ? "%zu particle is beyond the frame." : "%zu particles are beyond the frame.",

@@ -83,7 +83,31 @@ void charts_resolution(struct store *store, const char *quantity, const char *ad
   snprintf(text, size, "%s%s", words, after);
 }
 
+/* Appends ": coarse, early (2 runs)": the words that withhold a value, or those that mark one that is drawn. */
+static void append_words(const struct ask_doubts *doubts, bool withheld, int64_t of, char *text, size_t size) {
+  const char *before = ":";
+  for (size_t k = 0; k < doubts->count; k++) { /* rows of one word can share runs: the most of one of them */
+    int64_t runs = 0;
+    bool told = false;
+    for (size_t i = 0; i < doubts->count; i++) {
+      const struct ask_doubt *doubt = &doubts->word[i];
+      if (strcmp(doubt->word, doubts->word[k].word) != 0 || (withheld && !(doubt->row && doubt->row->withheld)))
+        continue;
+      told |= i < k;
+      const int64_t these = withheld || doubts->withheld == 0 ? doubt->runs : doubt->runs - doubt->withheld;
+      runs = these > runs ? these : runs;
+    }
+    if (told || runs == 0)
+      continue;
+    text_append(text, size, "%s %s", before, doubts->word[k].word);
+    before = ",";
+    if (runs < of)
+      text_append(text, size, " (%" PRId64 " run%s)", runs, text_plural(runs));
+  }
+}
+
 void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *text, size_t size) {
+  const int64_t withheld = doubts->withheld, drawn = doubts->runs - withheld, marked = doubts->doubtful - withheld;
   int64_t missing = 0, wanted;
   if (doubts->chosen && *doubts->chosen)
     text_append(text, size, "%sonly %s", *text ? "; " : "", doubts->chosen);
@@ -92,22 +116,13 @@ void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *t
                 doubts->excluded == 1 ? "" : "s");
   if (store && ask_run_missing(store, &missing, &wanted, NULL) == STATUS_OK && missing > 0)
     text_append(text, size, "%s%" PRId64 " of %" PRId64 " runs gave no result", *text ? "; " : "", missing, wanted);
-  if (doubts->doubtful == 0)
-    return;
-  text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs:", *text ? "; " : "", doubts->doubtful,
-              doubts->runs);
-  for (size_t k = 0; k < doubts->count; k++) { /* rows of one word can share runs: the most of one of them */
-    int64_t runs = doubts->word[k].runs;
-    bool told = false;
-    for (size_t i = 0; i < doubts->count; i++)
-      if (strcmp(doubts->word[i].word, doubts->word[k].word) == 0) {
-        told |= i < k;
-        runs = doubts->word[i].runs > runs ? doubts->word[i].runs : runs;
-      }
-    if (told)
-      continue;
-    text_append(text, size, "%s %s", k ? "," : "", doubts->word[k].word);
-    if (runs < doubts->doubtful)
-      text_append(text, size, " (%" PRId64 " run%s)", runs, text_plural(runs));
+  if (withheld > 0) {
+    text_append(text, size, "%swithheld, %" PRId64 " of %" PRId64 " runs", *text ? "; " : "", withheld, doubts->runs);
+    append_words(doubts, true, withheld, text, size);
+  }
+  if (marked > 0) {
+    text_append(text, size, "%s! in doubt, %" PRId64 " of %" PRId64 " runs%s", *text ? "; " : "", marked, drawn,
+                withheld > 0 ? " drawn" : "");
+    append_words(doubts, false, marked, text, size);
   }
 }

@@ -37,8 +37,9 @@ void charts_intervals(const struct ask_group_pooled *pooled, char *text, size_t 
  * one. */
 void charts_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
 
-/* Appends "; only campaign 2; 1 run excluded; 2 of 22 runs gave no result; ! in doubt, 3 of 20 runs: coarse, early" to
- * a caption, if there are such runs. store: whose chosen runs are drawn (ask_run_missing()); NULL: others. */
+/* Appends "; only campaign 2; 1 run excluded; 2 of 22 runs gave no result; withheld, 1 of 20 runs: box; ! in doubt, 3
+ * of 19 runs drawn: coarse, early" to a caption, if there are such runs. store: whose chosen runs are drawn
+ * (ask_run_missing()); NULL: others. */
 void charts_doubts(struct store *store, const struct ask_doubts *doubts, char *text, size_t size);
 
 /* ---- a quantity over one or two varied inputs: the mean of a result over the runs that share the inputs, or an

@@ -46,6 +46,7 @@ static void tell_doubts(const char *fields, const struct movie *movie, bool quie
   if (!snapshot_read_close(file) || !known)
     return;
   ask_doubts_run(&doubts, engine, words, OUTCOME_DEFAULT, 1);
+  doubts.withheld = 0; /* the body is drawn all the same */
   charts_doubts(NULL, &doubts, text, DOUBTS);
   if (!quiet && (!movie || movie->at + 1 == movie->count))
     uncertainty_doubts(&doubts, stderr);
@@ -189,6 +190,16 @@ static void name_look(const char *fields, const struct movie *movie, const struc
     text_append(text, size, ", fragments drawn apart");
 }
 
+/* How many numbers a picture lacks. Says on stderr if it has none. */
+static size_t tell_lacking(const char *fields, const char *what, size_t count, const double *value, bool quiet) {
+  size_t lacking = 0;
+  for (size_t i = 0; i < count; i++)
+    lacking += isfinite(value[i]) ? 0u : 1u;
+  if (lacking == count && !quiet)
+    fprintf(stderr, "clast: %s: no value of %s to draw: " PICTURE_BROKEN "\n", fields, what);
+  return lacking;
+}
+
 /* Reads the quantity for the colours: --what, else damage, or pressure for bodies without damage. NULL: fragments. */
 static status read_quantity(const char *fields, bool chosen, struct picture_cloud *cloud, const char **what,
                             char unit[32], struct error *error) {
@@ -216,8 +227,11 @@ static status draw_particles(const char *fields, const char *picture, const stru
     picture_draw_time(cloud.time, numbers);
   else
     picture_particles_numbers(&cloud, numbers, sizeof numbers);
-  if (picture)
+  if (picture) {
     tell_doubts(fields, movie, options->quiet, doubts);
+    if (cloud.value)
+      (void)tell_lacking(fields, what, cloud.n, cloud.value, options->quiet || movie);
+  }
   look.doubts = doubts;
   look.title = options->caption ? options->caption : title;
   look.subtitle = numbers;
@@ -277,6 +291,9 @@ static status draw_profile(const char *fields, const char *picture, const struct
   if (code)
     goto cleanup;
   tell_doubts(fields, NULL, options->quiet, doubts);
+  for (size_t k = 0; k < panels; k++)
+    if (tell_lacking(fields, names[k], count, panel[k].values, options->quiet))
+      text_append(doubts, DOUBTS, "%sNo mark: " PICTURE_BROKEN, *doubts ? ". " : "");
   name_look(fields, NULL, &(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
   const struct picture_page page = charts_page(picture, &options->chart);
   const struct picture_words words = {options->caption ? options->caption : title, doubts, "depth at the start (m)",

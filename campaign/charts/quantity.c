@@ -59,6 +59,7 @@ struct quantity {
   char name[256];                  /* column of the quantity, or the exponent's name */
   char main[ASK_GROUP_NAME];       /* the quantity that a user who names none sees */
   struct ask_group_pooled pooled;  /* what the means that are drawn average over */
+  bool seeds;                      /* a mean is of several runs of a point */
   char untold[400];                /* why some exponents are not told: their values are NaN */
   char changing[ASK_GROUP_POOLED]; /* varied inputs that are not drawn and change from point to point; "": none */
   char apart[256];                 /* the first input in which points of one place differ; "": none */
@@ -134,6 +135,7 @@ static status read_groups(struct quantity *quantity, struct answer *groups, stru
                             .doubtful = answer_integer(groups, axes + DOUBTFUL) > 0,
                             .weak = answer_integer(groups, axes + WEAK) > 0,
                             .decimals = -1};
+    quantity->seeds |= answer_integer(groups, axes + RUNS) > row.points;
     TRY(add_row(quantity, inputs, row, error));
   }
   return answer_end(groups);
@@ -431,10 +433,15 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
 static void made_of(const struct quantity *quantity, char *text, size_t size) {
   char pooled[ASK_GROUP_POOLED];
   charts_labels(quantity->pooled.inputs, pooled, sizeof pooled);
-  snprintf(text, size, "%s%s%s", quantity->exponent ? "fit to all runs of a point" : "mean over seeds",
+  snprintf(text, size, "%s%s%s",
+           quantity->exponent ? "fit to all runs of a point"
+           : quantity->seeds  ? "mean over seeds"
+           : *pooled          ? "mean"
+                              : "one run a point",
            !*pooled                  ? ""
            : quantity->pooled.single ? " and, of several points, "
-                                     : " and ",
+           : quantity->seeds         ? " and "
+                                     : " over ",
            pooled);
 }
 

@@ -265,6 +265,7 @@ static status take_curves(struct store *store, struct curves *curves, struct err
     TRY(make_curve(curves->choice, pool, curve, error));
     curve->fit.label = curve->fit_label;
     ask_doubts_add(&curves->doubts, &pool->doubts);
+    curves->doubts.withheld = 0; /* fragments are drawn all the same */
   }
   TRY(ask_pools_end(&pools));
   if (curves->count > 0)

@@ -178,7 +178,7 @@ struct scene *campaign_walk_scene(const struct campaign_walk *walk, struct error
 /* ---- Warnings about the inputs of a campaign before it runs, from its engine ---- */
 
 /* Writes a line per kind of warning (engine/outcome.h): `before`, the number of points that have it, and the engine's
- * text for the first of them. Looks at the first 1000 points. */
+ * text for the first of them; and the inputs of a sample that move together. Looks at the first 1000 points. */
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out);
 /* The same for one scene, without a number of points. */
 void campaign_warn_scene(const struct scene *scene, const char *before, FILE *out);

@@ -218,6 +218,50 @@ static void print_twins(const struct twins *twins, const char *before, FILE *out
   print_line(text, before, out);
 }
 
+/* Inputs of a sample that follow each other by chance: `clast sensitivity` asks the same of points that have run. */
+static void print_moving(const struct campaign *campaign, const struct twins *twins, const char *before, FILE *out) {
+  struct sensitivity_points points = {.points = twins->seen, .most = 1};
+  struct sensitivity_point index[LIMITS_AXES_OF_POOL + 1];
+  const bool named[LIMITS_AXES_OF_POOL] = {false};
+  const struct design_axis *axis[LIMITS_AXES_OF_POOL];
+  char text[LINE] = "";
+  size_t needed;
+  for (size_t a = 0; a < campaign->axis_count && points.inputs < LIMITS_AXES_OF_POOL; a++)
+    if (isfinite(design_axis_share(&campaign->axes[a], &twins->value[a])))
+      axis[points.inputs++] = &campaign->axes[a];
+  if (campaign->design.kind < CAMPAIGN_RANDOM || points.inputs < 2)
+    return;
+  OWNED double *x = NULL, *value = NULL;
+  OWNED size_t *runs = NULL;
+  if (memory_array(&x, points.points * points.inputs, sizeof *x, "points", NULL) ||
+      memory_array(&value, points.points, sizeof *value, "points", NULL) ||
+      memory_array(&runs, points.points, sizeof *runs, "points", NULL))
+    return;
+  for (size_t i = 0; i < points.points; i++) {
+    for (size_t k = 0; k < points.inputs; k++)
+      x[i * points.inputs +
+        k] = design_axis_share(axis[k], &twins->value[i * campaign->axis_count + (size_t)(axis[k] - campaign->axes)]);
+    value[i] = (double)i; /* any results: the verdict rests on the inputs alone */
+    runs[i] = 1;
+  }
+  points.x = x;
+  points.named = named;
+  points.value = value;
+  points.runs = runs;
+  if (sensitivity_points(&points, index, &needed, NULL))
+    return;
+  for (size_t k = 0; k < points.inputs; k++)
+    if (index[k].verdict == SENSITIVITY_MOVES)
+      text_append(text, sizeof text, "%s%s", *text ? ", " : "", axis[k]->row->path);
+  if (!*text)
+    return;
+  text_append(text, sizeof text,
+              " move together in these %zu points by chance: `clast sensitivity` will not tell their effects apart. "
+              "Give another design.seed, or more points",
+              points.points);
+  print_line(text, before, out);
+}
+
 void campaign_warn(const struct campaign *campaign, const char *before, FILE *out) {
   struct doubts doubts = {0};
   struct twins twins = {0};
@@ -232,6 +276,8 @@ void campaign_warn(const struct campaign *campaign, const char *before, FILE *ou
         add(&doubts, scene);
     }
   print_twins(&twins, before, out);
+  if (twins.seen > 0)
+    print_moving(campaign, &twins, before, out);
   free(twins.identity);
   free(twins.value);
   print(&doubts, before, doubts.points > 1, out);

@@ -113,7 +113,7 @@ struct ask_doubts {
   struct ask_doubt {
     char word[CONDITION_WORD];
     const struct condition *row; /* NULL: a word of another version */
-    int64_t runs;
+    int64_t runs, withheld;      /* withheld: of these, whose result is withheld, by this word or another one */
   } word[32];
 };
 

@@ -6,7 +6,8 @@
 #include "db/store/internal.h"
 #include "db/store/views.h"
 
-static void add_word(struct ask_doubts *doubts, const char *word, const struct condition *row, int64_t runs) {
+static void add_word(struct ask_doubts *doubts, const char *word, const struct condition *row, int64_t runs,
+                     int64_t withheld) {
   size_t k = 0;
   while (k < doubts->count && (strcmp(doubts->word[k].word, word) != 0 || doubts->word[k].row != row))
     k++;
@@ -17,6 +18,7 @@ static void add_word(struct ask_doubts *doubts, const char *word, const struct c
     snprintf(doubts->word[doubts->count++].word, CONDITION_WORD, "%s", word);
   }
   doubts->word[k].runs += runs;
+  doubts->word[k].withheld += withheld;
 }
 
 enum { ABSENT = sizeof((struct ask_doubts *)0)->absent / sizeof(struct ask_absent) };
@@ -48,7 +50,7 @@ enum condition_mark ask_doubts_run(struct ask_doubts *doubts, const char *engine
   doubts->withheld += mark == CONDITION_WITHHELD ? runs : 0;
   while (words[strspn(words, ", ")])
     if (condition_next(list, &words, results, word, &row))
-      add_word(doubts, word, row, runs);
+      add_word(doubts, word, row, runs, mark == CONDITION_WITHHELD ? runs : 0);
   return mark;
 }
 
@@ -61,7 +63,7 @@ void ask_doubts_add(struct ask_doubts *doubts, const struct ask_doubts *others) 
   for (size_t k = 0; k < ABSENT; k++)
     ask_doubts_absent(doubts, others->absent[k].name, others->absent[k].runs, others->absent[k].of);
   for (size_t k = 0; k < others->count; k++)
-    add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs);
+    add_word(doubts, others->word[k].word, others->word[k].row, others->word[k].runs, others->word[k].withheld);
 }
 
 enum { RESULTS = 32 };

@@ -176,6 +176,9 @@ YAML
 expect 0 "$clast" run withheld.yaml -j 2 --quiet
 expect 0 "$clast" stats withheld.db -Q strength --by strain_end
 says "withheld, 3 of 6 runs: event: the last stress over the largest one is above 0.9"
+expect 0 "$clast" plot withheld.db strength.png -x strain_end -Q strength --keep-script
+grep -q '^caption_text.*withheld, 3 of 6 runs: event' strength.gp || fail "a caption without the runs that are not drawn"
+! grep -q 'in doubt.*event' strength.gp || fail "a withheld run counts among those that are drawn"
 expect 0 "$clast" stats withheld.db -Q strength --by strain_end --csv
 python - <<'PY' || fail "withheld"
 import csv
@@ -251,6 +254,8 @@ seeds: {per_point: 1}
 store: dust.db
 YAML
 expect 0 "$clast" run dust.yaml -j 2 --quiet
+expect 0 "$clast" plot dust.db one.png --keep-script
+grep -q '^title_text.*: one run a point' one.gp || fail "a mean over one seed"
 expect 0 "$clast" export dust.db --per run
 same "$(python -c 'import csv; print([row["dust_fraction"] for row in csv.DictReader(open("out"))])')" "['', '']" "withheld in a file"
 expect 64 "$clast" sensitivity dust.db -Q dust_fraction
@@ -364,4 +369,4 @@ grep -q '^disruption' out || fail "explains another file"
 printf 'name: odd\nscene: my scene.yaml\n' >odd.yaml
 expect 65 "$clast" explain odd.yaml
 tr '\n' ' ' <err | grep -qF "\`clast explain 'my scene.yaml'\` explains the scene" || fail "advice without quotes"
-done_after 133
+done_after 135

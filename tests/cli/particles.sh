@@ -54,6 +54,11 @@ expect 0 "$clast" picture end.hdf profile.svg --view profile
 grep -q '</svg>' profile.svg || fail "no whole SVG"
 expect 0 "$clast" picture end.hdf profile.png --view profile --what pressure
 is_png profile.png
+cp end.hdf broken.hdf
+python -c 'import h5py; h5py.File("broken.hdf", "a")["axis/pressure"][...] = float("nan")'
+expect 0 "$clast" picture broken.hdf profile.png --view profile --what pressure --keep-script
+says "broken.hdf: no value of pressure to draw: broken matter, which bears no tension"
+grep -q '^caption_text.*No mark: broken matter, which bears no tension' profile.gp || fail "an empty profile without its reason"
 expect 64 "$clast" picture end.hdf x.png --view profile --axis z
 expect 65 "$clast" picture end.hdf x.png --view profile --what colour
 says "it has distention, damage"
@@ -145,4 +150,4 @@ got=0 # the disk fills up at the end (a limit on file size gives such an error):
 same $got 74 "fields file too large"
 cmp -s out whole.json || fail "the results are lost with the fields file"
 [ -z "$(find . -name 'full.hdf*')" ] || fail "half a fields file is left"
-done_after 59
+done_after 60

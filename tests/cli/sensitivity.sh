@@ -75,6 +75,15 @@ says "no effect at any of these points, and left out: contact_friction"
 grep -q friction out && fail "an input without effect has a rank"
 ok "friction without tangential damping"
 
+# ---- inputs of a sample that follow each other by chance are told before it runs
+sed -e '/^design/s/12/12, seed: 4/' -e '/^vary/s/contact.friction: {uniform: .0.1, 0.8./charge.energy: {log_uniform: [0.5 kJ\/m, 4 kJ\/m]/' idle.yaml >together.yaml
+expect 0 "$clast" plan together.yaml --no-trial
+tr -s '\n ' ' ' <out | grep -q "threshold.strain, charge.energy move together in these 12 points by chance: .* another design.seed, or more" || fail "no word on inputs that move together"
+sed -i 's/seed: 4/seed: 3/' together.yaml
+expect 0 "$clast" plan together.yaml --no-trial
+! grep -q "move together" out || fail "inputs that are told apart"
+ok "inputs that move together, before the run"
+
 # ---- any points: a Latin hypercube with a linked axis, and what cannot be told
 cat >latin.yaml <<'YAML'
 name: latin
@@ -202,4 +211,4 @@ expect 65 "$clast" sensitivity ask.yaml new.yaml --design saltelli
 says "expected the key vary"
 expect 66 "$clast" sensitivity none.db ask.yaml
 [ ! -e new.yaml ] && [ ! -e new.csv ] || fail "a file of a refused design"
-done_after 48
+done_after 51
