@@ -29,6 +29,15 @@ bool campaign_read_value(document_node *node, const struct field *row, const cha
   return whole && strlen(whole) < FIELD_TEXT_SIZE;
 }
 
+/* Does the axis follow another one, or another one it? */
+static bool is_linked(const struct campaign *campaign, const struct design_axis *axis) {
+  for (size_t a = 0; a < campaign->axis_count; a++)
+    if (campaign->axes[a].kind == DESIGN_AXIS_LINKED &&
+        (&campaign->axes[a] == axis || &campaign->axes[campaign->axes[a].linked] == axis))
+      return true;
+  return false;
+}
+
 /* Reads one entry of `set`. Returns the input; NULL: not found, reported. *good: false after a report. */
 static const struct field *read_set_value(document_node *node, const char *key, const char *path, const char *folder,
                                           const struct campaign *campaign, struct scene *scene, const char *varied,
@@ -42,8 +51,13 @@ static const struct field *read_set_value(document_node *node, const char *key, 
     return NULL;
   }
   const struct field *row = field_find_in(scene->kind->inputs, key, scene->inputs, &error);
-  if (row && campaign_axis(campaign, row->path))
-    document_report(node, path, "%s", varied);
+  const struct design_axis *axis = row ? campaign_axis(campaign, row->path) : NULL;
+  if (axis)
+    document_report(node, path, "%s",
+                    document_is_put(node) && is_linked(campaign, axis)
+                        ? "in `vary` it is linked to another input, which one value would not fit: change `vary` in "
+                          "the file"
+                        : varied);
   else if (!row ||
            (campaign_read_value(node, row, folder, &value) && scene_set(scene, row->path, &value, &error) != STATUS_OK))
     document_report_error(node, path, &error);

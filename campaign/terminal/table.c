@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "db/store/views.h"
@@ -964,6 +965,20 @@ static void find_marks(struct rows *rows, const struct answer *answer) {
   }
 }
 
+/* A number of seconds since 1970: people see the date. */
+static bool is_date(const struct table *table, const char *name) {
+  return table->people && ends_in(name, "_at");
+}
+
+static void print_date(struct table *table, double seconds) {
+  char text[32] = "";
+  struct tm utc;
+  const time_t time = fabs(seconds) < 1e11 ? (time_t)seconds : 0; /* a hostile store has any numbers */
+  if (gmtime_r(&time, &utc))
+    strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  table_text(table, text);
+}
+
 /* The headings, with the units of the store's columns: people see varied inputs in the campaign's units (`written`). */
 static void name_columns(struct rows *rows, const struct answer *answer, bool written) {
   OWNED struct ask_column *units = NULL;
@@ -988,7 +1003,7 @@ static void name_columns(struct rows *rows, const struct answer *answer, bool wr
     if (axis < axis_count)
       table_key(rows->table, &axes[axis]);
     else if (!rows->hidden[i])
-      table_column(rows->table, name, unit);
+      table_column(rows->table, name, is_date(rows->table, name) ? NULL : unit);
   }
 }
 
@@ -1037,6 +1052,8 @@ static void print_row(struct rows *rows, const struct answer *answer) {
     }
     if (value.kind == QUERY_BLOB)
       print_blob(rows, value.blob, value.size);
+    else if (value.kind == QUERY_REAL && is_date(rows->table, answer_name(answer, i)))
+      print_date(rows->table, value.real);
     else
       table_value(rows->table, &value);
   }

@@ -140,6 +140,17 @@ struct answer ask_campaign_sessions(struct store *store, struct error *error) {
       " (SELECT group_concat(value, ' ') FROM json_each(facts, '$.command')) FROM session ORDER BY session_id");
 }
 
+/* Do most of the runs that count have this result? Not after a merge of stores of several engines. */
+static bool most_have(struct store *store, const char *name) {
+  int64_t runs = 0, having = 0;
+  ANSWER kinds = answer_to(store, NULL, "SELECT engine, count(*) FROM runs WHERE counts = 1 GROUP BY engine");
+  while (answer_next(&kinds)) {
+    runs += answer_integer(&kinds, 1);
+    having += views_has_result(engine_find(answer_text(&kinds, 0), NULL), name) ? answer_integer(&kinds, 1) : 0;
+  }
+  return 2 * having >= runs;
+}
+
 status ask_quantity_main(struct store *store, char name[ASK_GROUP_NAME], const char **quantity, struct error *error) {
   if (*quantity)
     return STATUS_OK;
@@ -148,7 +159,7 @@ status ask_quantity_main(struct store *store, char name[ASK_GROUP_NAME], const c
                            "campaign_id DESC LIMIT 1",
                            CAMPAIGN_IS_ROUND);
   const bool has = answer_next(&found) && answer_value(&found, 0).kind == QUERY_TEXT &&
-                   ask_group_quantity(store, answer_text(&found, 0), name, NULL) == STATUS_OK;
+                   ask_group_quantity(store, answer_text(&found, 0), name, NULL) == STATUS_OK && most_have(store, name);
   if (!has)
     snprintf(name, ASK_GROUP_NAME, "%s", OUTCOME_DEFAULT);
   *quantity = name;

@@ -177,6 +177,16 @@ static status judge_input(struct store *store, const char *name, const struct ch
     return status_fail(error, STATUS_USAGE, "%s has one value in all points%s. Known are: %s.", path,
                        store->left_out ? " (--studies: also in those of studies and searches)" : "",
                        choice->known[0] ? choice->known : "none");
+  ANSWER from = answer_to(store, error,
+                          "SELECT i.path FROM axis JOIN point_input i USING (path) JOIN point_input o ON o.point_id = "
+                          "i.point_id AND o.path = %Q GROUP BY i.path HAVING count(DISTINCT i.value) = count(DISTINCT "
+                          "o.value) AND count(DISTINCT quote(i.value) || quote(o.value)) = count(DISTINCT o.value) "
+                          "ORDER BY i.path LIMIT 1",
+                          path);
+  if (answer_next(&from))
+    return status_fail(error, STATUS_USAGE, "%s follows from %s, which a campaign varies: take that", path,
+                       answer_text(&from, 0));
+  TRY(answer_end(&from));
   return status_fail(error, STATUS_USAGE, "%s is no axis of this store: no campaign varies it. Known are: %s.", path,
                      choice->known[0] ? choice->known : "none");
 }

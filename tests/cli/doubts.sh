@@ -193,7 +193,7 @@ prints "3,3,6" # the store keeps the raw values
 ! grep -q "in doubt" err || fail "a question about the words is told of them"
 expect 0 "$clast" query withheld.db "select avg(strength) from runs"
 says "3 runs of this store have a result in doubt: see columns doubtful and warnings of the view runs"
-printf 'name: liquid\nscene: disruption\nset: {fidelity.particles: 300, fidelity.projectile_spacing: 0.5, stop.end_time: 9 us}\nvary: {target.strength: [true, false]}\nseeds: {per_point: 2}\nstore: liquid.db\n' >liquid.yaml
+printf 'name: liquid\nquantity: ejecta.mass_fraction\nscene: disruption\nset: {fidelity.particles: 300, fidelity.projectile_spacing: 0.5, stop.end_time: 9 us}\nvary: {target.strength: [true, false]}\nseeds: {per_point: 2}\nstore: liquid.db\n' >liquid.yaml
 expect 0 "$clast" run liquid.yaml -j 2 --quiet
 same "$(number liquid.db "select (select count(*) from run where largest_fraction >= 0) || ' ' || (select count(largest_fraction) from runs) || ' ' || count(largest_fraction_mean) || ' ' || count(largest_fraction_sd) || ' ' || count(mean_fragment_mass_mean) from points")" "4 2 1 1 2" "a main result that is withheld"
 # No ready question shows such a value: the table gets one that would be seen.
@@ -217,6 +217,10 @@ assert {row["run_id"] for row in json.loads(ask("raw.db", "--named", "censored",
 PY
 ok "ready questions and withheld values"
 expect 0 "$clast" merge kinds.db withheld.db liquid.db # masses per metre beside others
+expect 0 "$clast" stats kinds.db
+grep -q "largest_fraction" out || fail "the default is a quantity that most runs lack: $(head -2 out)"
+expect 0 "$clast" query kinds.db "select finished_at from runs limit 1"
+grep -qE "^ *20..-..-..T..:..:..Z$" out || fail "a date in seconds: $(cat out)"
 expect 0 "$clast" query kinds.db "select engine, total_mass from runs"
 grep -q 'total_mass *$' out || fail "one unit for masses of two kinds"
 expect 0 "$clast" query liquid.db "select energy_kinetic, energy_input from runs" # of dem in J/m
@@ -369,4 +373,4 @@ grep -q '^disruption' out || fail "explains another file"
 printf 'name: odd\nscene: my scene.yaml\n' >odd.yaml
 expect 65 "$clast" explain odd.yaml
 tr '\n' ' ' <err | grep -qF "\`clast explain 'my scene.yaml'\` explains the scene" || fail "advice without quotes"
-done_after 135
+done_after 137

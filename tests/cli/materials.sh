@@ -113,7 +113,7 @@ expect 0 "$clast" run rocks/mix.yaml --quiet
 same "$(sqlite3 mix.db "select count(*) from run")" 6 "runs after the same command again"
 expect 0 "$clast" plot mix.db bars.png -x material
 expect 64 "$clast" stats mix.db --by density # not that of the projectile, which has one value
-says "target.material.density is no axis of this store"
+says "target.material.density follows from target.material.name, which a campaign varies: take that"
 expect 0 "$clast" check mix.db
 # Values of rocks follow from their names also in a merge whose campaigns begin with other rocks.
 sed 's/name: mix/name: back/; s/\[basalt.*\]/[.\/thin.yaml, basalt]/' rocks/mix.yaml >rocks/back.yaml

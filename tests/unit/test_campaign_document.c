@@ -251,6 +251,7 @@ TEST(a_set_input_does_not_vary) {
     const struct campaign_changes changes = {1, &cases[i].change, 0, 0};
     if (cases[i].points == 0) {
       assert_int_equal(campaign_load_changed("t-linked.yaml", &changes, &campaign, &error), STATUS_USAGE);
+      assert_non_null(strstr(error.message, "it is linked to another input"));
       continue;
     }
     OK(campaign_load_changed("t-layer.yaml", &changes, &campaign, &error));
