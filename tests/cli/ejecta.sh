@@ -14,6 +14,8 @@ expect 0 "$clast" check shots.db
 # A result by the name that it has in a scene: its error is that of the column.
 expect 0 "$clast" stats shots.db -Q ejecta.mass_fraction
 says "clast: ejecta_mass_fraction: intervals are over"
+expect 0 "$clast" plot shots.db shots.png -Q ejecta.mass_fraction --keep-script
+grep -q "^y_label.*share of the target.*mass" shots.gp || fail "a share of what: $(grep ^y_label shots.gp)"
 expect 0 "$clast" spectrum shots.db --ejecta
 prints "momentum [kg m/s]"; says "intervals over runs"; says "coarse"
 # All of the table is what the results say; the table of the command has the means of a point.

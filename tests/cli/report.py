@@ -456,6 +456,7 @@ def ends(browser):
     weak = sum(row["weak"] == "1" for row in of_three)
     assert 0 < weak == browser.js("[...document.querySelectorAll('#plane-chart .role-mark text')].filter((t) => t.textContent.includes('~')).length"), weak
     assert "~: weak, too few runs" in caption and "(weak)" not in caption, caption
+    assert "Bars: 95 % intervals. Click a mark," in caption, caption
     assert not boxes("#plane-chart .mark-line.role-mark path"), "points of one place are joined"
     done("no mark is cut by the frame")
     alter(f"{three}.html", "narrow.html", "UPDATE spectra SET count_hw95 = count_mean / 2")

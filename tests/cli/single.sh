@@ -149,10 +149,16 @@ expect 1 "$clast" simulate gabbro-crater --seed 1 --set fidelity.graded=false --
   --set fidelity.projectile_spacing=0.1 --set sides.far=damped --set sides.depth='0.1 mm'
 prints "no results"; ! grep -q "M_1/M" out || fail "numbers of a run that did not begin"
 expect 65 "$clast" explain gabbro-crater --set fidelity.particles=3000
-says "particles, not 3000"
+says "particles, not 3000: give fidelity.particles within this range"
+expect 0 "$clast" explain gabbro-crater --set fidelity.particles="$(tr '\n' ' ' <err | sed 's/.*gives \([0-9]*\) to.*/\1/')" # one remedy is enough
+expect 65 "$clast" explain gabbro-crater --set fidelity.graded=false --set fidelity.particles=3000
+expect 0 "$clast" explain gabbro-crater --set fidelity.graded=false --set fidelity.particles=3000 \
+  --set fidelity.projectile_spacing="$(tr '\n' ' ' <err | sed 's/.* to \([0-9.]*\), raise.*/\1/')"
+expect 0 "$clast" explain solid-ice --set fidelity.spacings_per_radius=2
+tr '\n' ' ' <out | grep -q "; spacings_per_radius itself is below 5 (clast" || fail "a number of particles that does not cure"
 # A box of which one side is given.
 printf 'engine: sph\nname: cube\ntarget: {shape: box, width: 5 cm, material: basalt}\nimpact: {projectile: mass, mass: 0.2 g, speed: 3 km/s}\n' >cube.yaml
 expect 0 "$clast" explain ./cube.yaml
 tr '\n' ' ' <out | grep -qF "of a box, target.width is given, and the other sides have their defaults: target.depth 0.2 m, target.height 0.2 m" ||
   fail "the other sides are not told"
-done_after $((51 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((55 + 3 * $(echo "$scenes" | wc -w)))

@@ -330,10 +330,10 @@ static status check_range(struct sph_grading *g, double particles, struct shells
   if (!(particles >= (1 - within) * fewest && particles <= (1 + within) * most))
     return status_fail(
         error, STATUS_CONTENT,
-        "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change "
-        "fidelity.particles, fine_spacing (where it is not given: spacings_per_radius) or fine_radius, or "
-        "set fidelity.graded: false",
-        g->fine, ceil(fewest), floor(most), particles);
+        "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: give "
+        "fidelity.particles within this range, or a %s fine_spacing (where it is not given: %s spacings_per_radius)",
+        g->fine, ceil(fewest), floor(most), particles, particles < fewest ? "larger" : "smaller",
+        particles < fewest ? "less" : "more");
   return STATUS_OK;
 }
 

@@ -485,6 +485,7 @@ INPUT_REAL(fidelity.distention_step, palpha.distention_step, "1", 0.01, 1e-6, 1,
                        "without pores.",
                 .source = "Jutzi, Benz & Michel 2008"),
     RESULT_SHARE(compaction.mass_fraction, palpha.compaction.mass_fraction,
+                 .label = "compacted share of the target's mass",
                  .doc = "Impact: mass share of the target that was compacted: its distention at zero pressure fell "
                         "from 1.01 or more to below 1.01. Off without pores.",
                  .source = "Jutzi & Benz, figure 2"),

@@ -66,7 +66,7 @@ static const struct field rows[] = {
                      "over the fragments. Lengths are the axes of the solid ellipsoid with the fragment's moments of "
                      "inertia. Off without such a fragment."),
     RESULT_SHARE(fragments.c_over_a, shapes.c_over_a, .doc = "Shortest over longest length of the same fragments."),
-    SHARE(ejecta.mass_fraction,
+    SHARE(ejecta.mass_fraction, .label = "ejecta as a share of the target's mass",
           .doc = "Impact: mass share of the target leaving faster than crater.ejection_speed and crater.escape_speed. "
                  "Times target_mass: their mass. `clast spectrum STORE --ejecta` shows it over the speed.",
           .source = "Jutzi & Benz, section 3"),

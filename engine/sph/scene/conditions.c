@@ -545,6 +545,15 @@ BEFORE(overruled, in->kind == SPH_IMPACT && in->fidelity.graded && sph_derived_h
                       in->fidelity.spacings_per_radius > 0 &&
                       fabs(in->fidelity.fine_spacing / sph_derived_asked_spacing(in) - 1) > 1e-9)
 
+#define SPACINGS 5 /* least number of them in the projectile's radius */
+
+static void tell_spacings(const void *inputs, FILE *out) {
+  const struct sph_inputs *in = inputs;
+  sph_derived_tell_unkept(inputs, out);
+  if (in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.spacings_per_radius < SPACINGS)
+    fprintf(out, "; spacings_per_radius itself is below %d", SPACINGS);
+}
+
 /* fidelity.coarsest bounds what fidelity.spacings_per_radius asks for. */
 BEFORE(bounds_nothing, in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.coarsest > 0 &&
                            !(sph_derived_has_projectile(in) && in->fidelity.spacings_per_radius > 0))
@@ -674,7 +683,8 @@ const struct condition sph_conditions[] = {
               .reason = "the energy drifts by 1 % in some runs from 3.1 on (tests/extremes/map.md)",
               .remedy = "set method.volume_weights: true", .before = contrast),
     CONDITION(
-        "coarse", .number = "the number of particle spacings in the projectile's radius", .bound = 5, .least = true,
+        "coarse", .number = "the number of particle spacings in the projectile's radius", .bound = SPACINGS,
+        .least = true,
         .doubt = "the shock of the impact is not resolved, and all that follows from it moves with the particles",
         .reason =
             "benchmarks of impact codes ask for 10 to 20 (Pierazzo and others 2008, Meteorit. Planet. Sci. 43, 1917)",
@@ -682,7 +692,7 @@ const struct condition sph_conditions[] = {
             "take more particles; or, of a scene that is not graded, set fidelity: {graded: true, "
             "spacings_per_radius: 5, projectile_spacing: 1}, and where the scene has a fidelity.fine_spacing, make "
             "that a fifth of the radius; if it takes more particles, a message says how many",
-        .results = ALL_OF_AN_IMPACT, .before = spacings, .beside = sph_derived_tell_unkept),
+        .results = ALL_OF_AN_IMPACT, .before = spacings, .beside = tell_spacings),
     CONDITION("wall", .number = "the number of particle spacings through the wall of colliding rings or cylinders",
               .bound = 4, .least = true,
               .doubt = "the wall is not resolved, and the speed of the rebound moves with the particles",

@@ -259,9 +259,9 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
   TRY(check_flight(in, error));
   const double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;
   if (pieces < 1 - 1e-9) /* one is enough, within rounding of its volume */
-    REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise "
+    REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing from %.4g to %.2g, raise "
            "fidelity.particles, or take a larger projectile",
-           pieces, in->fidelity.projectile_spacing);
+           pieces, in->fidelity.projectile_spacing, 0.95 * in->fidelity.projectile_spacing * cbrt(pieces));
   return in->fidelity.graded ? check_graded(in, error) : STATUS_OK;
 }
 
