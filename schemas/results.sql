@@ -735,10 +735,9 @@ at AS MATERIALIZED (SELECT base_point_id, knob, point_id, max(iif(main, value, N
   FROM (SELECT q.*, k.point_id, n.value FROM kin k JOIN knob_path q USING (base_point_id)
       LEFT JOIN point_input n ON n.point_id = k.point_id AND n.path = q.path ORDER BY k.point_id, q.path)
   GROUP BY base_point_id, knob, point_id),
--- The level that tells the error of a point: the one with its setting, else the next coarser one. Coarser than all
--- levels, or a choice that is none of them: the largest error counts. Of another level it is no bound.
-chosen AS (SELECT p.*, min(l.size), l.resolution, l.left_by_seeds, iif(l.inputs IS a.inputs, l.open, 1) AS open,
-    iif(l.inputs IS a.inputs OR l.open, l.beyond, NULL) AS beyond
+-- The level that tells the error of a point: the one with its setting, else the next coarser one, whose error is no
+-- smaller. Coarser than all levels, or a choice that is none of them: the largest error counts, which is no bound.
+chosen AS (SELECT p.*, min(l.size), l.resolution, l.left_by_seeds, l.open, l.beyond
   FROM placed p LEFT JOIN at a USING (base_point_id, knob, point_id)
     LEFT JOIN (SELECT l.*, t.inputs FROM level l LEFT JOIN at t USING (base_point_id, knob, point_id)
       WHERE resolution IS NOT NULL) l

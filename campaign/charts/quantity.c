@@ -371,7 +371,7 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
                               struct error *error) {
   struct ask_column axes[LIMITS_AXES_OF_POOL];
   struct ask_group_pooled pooled;
-  char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", allowed[64], widest[64], where[400] = "";
+  char by[LIMITS_AXES_OF_POOL * sizeof axes->name] = "", allowed[64], widest[64], where[400] = "", told[160];
   size_t count;
   int64_t points = 0, kept = 0, not_studied = 0, open = 0;
   double largest = -1;
@@ -412,16 +412,19 @@ status quantity_tell_accuracy(struct store *store, const char *name, const char 
     return STATUS_OK;
   show_error(within, of_value, unit, allowed, sizeof allowed);
   show_error(largest, of_value, unit, widest, sizeof widest);
-  words_print(stderr, "",
-              "clast: accuracy: %" PRId64 " of %" PRId64
-              " point%s within %s%s by %s; the largest error is %s%s%s%s%s%s",
-              kept, points, points == 1 ? " is" : "s are", allowed, of_value ? " of the mean" : "",
+  snprintf(told, sizeof told, "%" PRId64 " point%s judged", points, text_plural(points));
+  if (!isnan(within))
+    snprintf(told, sizeof told, "%" PRId64 " of %" PRId64 " point%s within %s%s", kept, points,
+             points == 1 ? " is" : "s are", allowed, of_value ? " of the mean" : "");
+  words_print(stderr, "", "clast: accuracy: %s by %s; the largest error is %s%s%s%s%s%s", told,
               not_studied == points ? "the interval over seeds alone (no point was studied)"
                                     : "interval over seeds and error of the resolution together",
               widest, *where ? " (" : "", where, *where ? ")" : "",
               not_studied && not_studied < points ? "; points whose resolution was not studied count with seeds alone"
                                                   : "",
-              kept < points ? ". A smaller accuracy.within takes more seeds or finer settings" : "");
+              kept < points && !isnan(within)
+                  ? ". `clast plan` counts these runs, too: the same command again takes more seeds, or says why not"
+                  : "");
   if (open > 0)
     words_print(stderr, "",
                 "clast: accuracy: no limit is seen at %" PRId64 " of them, so that their error may be larger than that",

@@ -10,8 +10,7 @@ static status list_knobs(const struct study_request *request, const struct comma
   if (path)
     TRY(study_is_campaign(path) ? campaign_load(path, &campaign, error)
                                 : option_load_scene(path, &request->set, &scene, error));
-  const struct scene *of = campaign ? campaign->scene : scene;
-  return study_print_knobs(of ? of->kind : NULL, line->format, error);
+  return study_print_knobs(campaign ? campaign->scene : scene, line->format, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {

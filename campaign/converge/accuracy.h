@@ -33,6 +33,7 @@ struct accuracy_option {
                        the option is chosen for a time only. Else 0 */
   double mean;      /* of an extrapolated one that of the finest level with runs */
   int64_t n;        /* seeds of this mean */
+  bool learned;     /* of all runs of the store, not of the study alone */
   double within;    /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
   bool share;       /* of a share, whose intervals in tables are wider than Student's */
   double deviation; /* standard deviation between seeds */
@@ -54,7 +55,8 @@ struct accuracy {
                      are in the order of convergence_order() */
   char advice[1600]; /* how to reach the accuracy, where no option does */
   char marked[512];  /* levels that are no options as their runs are in doubt: "grains = 0.005 m (step)"; "": none */
-  char studied[300]; /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
+  char place[300];   /* of several points the one whose study this is: "point 1, speed 150 m/s"; "": there is one */
+  bool some_studied; /* the others have no study */
   char
       widest_point[500]; /* a sentence on another studied point at which the chosen setting is farthest off; "": none */
   const char *path;      /* the campaign's file with --set and --store of the command (option_words()); borrowed */

@@ -237,7 +237,7 @@ static void advise_seeds(const struct accuracy_finding *finding, const struct ac
   for (size_t k = 0; k < best->part_count; k++) {
     char levels[512] = "";
     append_levels(finding, best->part[k].knob, false, levels, sizeof levels);
-    if (best->part[k].knob->group == KNOB_RESOLUTION && *levels)
+    if (best->part[k].knob->group == KNOB_RESOLUTION && *levels && best->part[k].error > 0)
       text_append(next, size, " --knob %s=%s", best->part[k].knob->name, levels);
   }
   text_append(next, size, " --max-seeds %.0f --within off --seeds %.0f`", seeds, seeds);

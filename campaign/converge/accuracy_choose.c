@@ -58,7 +58,7 @@ static void take_part(const struct accuracy_row_part *from, struct accuracy_opti
   const struct ask_part *part = &from->part;
   const bool small = part->beyond < SMALL * option->within;
   size_t at = option->part_count;
-  if (at == LIMITS_STUDY_KNOBS)
+  if (at == LIMITS_STUDY_KNOBS || isnan(part->error)) /* NaN: no levels were compared */
     return;
   option->part_count++;
   for (; at > 0 && strcmp(option->part[at - 1].knob->name, from->knob->name) > 0; at--)
@@ -99,6 +99,19 @@ static double total_of(const struct accuracy_option *option, int64_t seeds) {
   return accuracy_resolution(option) + fmax(student, of_share);
 }
 
+/* The number of seeds by mean, deviation and error of an option. */
+static void count_seeds(const struct accuracy *accuracy, struct accuracy_option *option) {
+  option->seeds = !isnan(accuracy->point_s) ? seeds_in(option, accuracy->point_s)
+                  : isnan(option->beyond)   ? 0
+                                            : accuracy_seeds(option->mean, option->deviation,
+                                                             option->within - accuracy_resolution(option), option->share);
+}
+
+static void sum_up(struct accuracy_option *option) {
+  option->total = total_of(option, option->seeds);
+  option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
+}
+
 static status add_option(struct accuracy_finding *finding, const struct convergence_row *row,
                          struct accuracy_option *option, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
@@ -120,12 +133,8 @@ static status add_option(struct accuracy_finding *finding, const struct converge
   else if (option->beyond > most)
     option->beyond = fmax(most, 0);
   option->deviation = row->deviation;
-  option->seeds = !isnan(accuracy->point_s) ? seeds_in(option, accuracy->point_s)
-                  : isnan(option->beyond)   ? 0
-                                            : accuracy_seeds(option->mean, row->deviation,
-                                                             option->within - accuracy_resolution(option), option->share);
-  option->total = total_of(option, option->seeds);
-  option->cpu_s = option->seeds ? (double)option->seeds * option->run_s : (double)NAN;
+  count_seeds(accuracy, option);
+  sum_up(option);
   accuracy->options[accuracy->count++] = *option;
   return STATUS_OK;
 }
@@ -184,7 +193,7 @@ static double mean_cost(const struct accuracy_finding *finding, const struct acc
   double sum = 0, points = 0;
   for (size_t i = 0; i < finding->place_count; i++) {
     const struct accuracy_place *place = &finding->places[i];
-    const double cost = place->scene ? cost_at(finding, place->point, option) : (double)NAN;
+    const double cost = place->point ? cost_at(finding, place->point, option) : (double)NAN;
     const double by_own = own_cost(finding, place) / studied, by_work = place->work / accuracy_work(finding->scene);
     if (isnan(place->work)) /* the scene of the point is refused */
       continue;
@@ -296,6 +305,72 @@ static void sort_and_choose(struct accuracy *accuracy) {
   for (size_t i = 1; i < accuracy->count; i++)
     if (by_error(&accuracy->options[i], &accuracy->options[accuracy->reference]) < 0)
       accuracy->reference = i;
+}
+
+/* The runs of the store with an option's settings at a point of the campaign. */
+static status read_runs(const struct accuracy_finding *finding, const struct accuracy_place *place,
+                        const struct accuracy_option *option, struct sample_summary *runs, struct error *error) {
+  const struct study_quantity *quantity = &finding->quantity;
+  const struct knob *knob = accuracy_knob(finding->campaign, option->knob);
+  struct sample_moments moments = {0};
+  int64_t point = place->point;
+  *runs = (struct sample_summary){0};
+  if (!option->own) {
+    SCENE scene = scene_copy(place->scene);
+    if (!knob || ladder_turn(knob, scene, option->setting, &(struct error){0}) != STATUS_OK)
+      return STATUS_OK;
+    TRY(store_point_find(finding->store, scene, &point, error));
+  }
+  ANSWER answer = ask_run_of_point(finding->store, point, place->scene->kind, quantity->row, quantity->of_outcome,
+                                   error);
+  for (struct ask_run_of_point run; ask_run_of_point_next(&answer, &run);)
+    if (outcome_is_usable(run.state) && !run.withheld && !run.surplus && !run.excluded)
+      sample_add(&moments, run.value);
+  *runs = sample_summarise_moments(&moments, 0.95);
+  return answer_end(&answer);
+}
+
+/* Takes mean and scatter of an option from all of its runs, those of the campaign, too: the point that needs most seeds
+ * decides. */
+static status learn(const struct accuracy_finding *finding, struct accuracy_option *option, struct error *error) {
+  const double mean = option->mean;
+  int64_t most = -1;
+  option->learned = true;
+  for (size_t i = 0; finding->quantity.row && i < finding->place_count; i++) {
+    const struct accuracy_place *place = &finding->places[i];
+    struct accuracy_option here = *option;
+    struct sample_summary runs;
+    if (!place->scene)
+      continue;
+    TRY(read_runs(finding, place, option, &runs, error));
+    if (runs.n < ACCURACY_FEWEST_SEEDS)
+      continue;
+    here.mean = runs.mean;
+    here.n = (int64_t)runs.n;
+    here.deviation = runs.standard_deviation;
+    here.within = accuracy_allowed(finding->campaign, here.mean);
+    if (place->point == finding->point)
+      *option = here;
+    else if (finding->campaign->accuracy_of_value && mean != 0) /* as large a share of the mean there */
+      here.error *= fabs(here.mean / mean), here.beyond *= fabs(here.mean / mean);
+    count_seeds(finding->accuracy, &here);
+    most = here.seeds == 0 || most == 0 ? 0 : here.seeds > most ? here.seeds : most;
+  }
+  count_seeds(finding->accuracy, option);
+  if (option->seeds && (most == 0 || most > option->seeds))
+    option->seeds = most;
+  sum_up(option);
+  return STATUS_OK;
+}
+
+status accuracy_learn(struct accuracy_finding *finding, struct error *error) {
+  struct accuracy *accuracy = finding->accuracy;
+  const bool in_time = !isnan(accuracy->point_s); /* the same command must not take the time again */
+  while (!in_time && accuracy->chosen < accuracy->count && !accuracy->options[accuracy->chosen].learned) {
+    TRY(learn(finding, &accuracy->options[accuracy->chosen], error));
+    sort_and_choose(accuracy);
+  }
+  return STATUS_OK;
 }
 
 double accuracy_least(const struct accuracy *accuracy, double point_s, bool *open) {

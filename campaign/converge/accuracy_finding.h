@@ -16,7 +16,7 @@ struct accuracy_finding {
   size_t row_count, row_room;
   struct accuracy_place { /* a point of the campaign */
     int64_t point;        /* in the store; 0: not there */
-    struct scene *scene;  /* with a study; owned */
+    struct scene *scene;  /* owned; NULL: it is refused */
     double work, own_s;   /* of a run with its own settings; NaN: not known */
   } * places;             /* the first ones; owned */
   size_t place_count, place_room;
@@ -29,7 +29,6 @@ struct accuracy_finding {
 
   const struct scene *scene;  /* whose study is used; borrowed */
   int64_t point;              /* its point in the store */
-  bool all_studied;           /* every point of the campaign has a study */
   char hopeless[256];         /* knobs whose finest level is marked by its runs: "grains,time_step"; "": none */
   char marks[ACCURACY_MARKS]; /* of the level that becomes an option */
   const struct convergence_row *finest; /* the reference of the last knob that has one, for levels finer than it */
@@ -46,6 +45,9 @@ double accuracy_work(const struct scene *scene);
 
 /* Makes options of the study of finding->point, and sorts them. */
 status accuracy_choose_options(struct accuracy_finding *finding, struct error *error);
+/* Takes mean and scatter of the chosen option from all of its runs at the points of the campaign, and chooses again
+ * until the chosen one has them. */
+status accuracy_learn(struct accuracy_finding *finding, struct error *error);
 /* How far a result with this mean can move. */
 double accuracy_most(bool share, double mean);
 /* The error, with what may lie beyond the finest levels. */

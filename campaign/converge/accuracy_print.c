@@ -8,6 +8,8 @@
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 
+enum { FEW_RUNS = 10 }; /* the true standard deviation may be twice that of fewer */
+
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
 static void name_option(const struct campaign *campaign, const struct accuracy_option *option, char *text,
                         size_t size) {
@@ -73,7 +75,7 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
       error, STATUS_CONTENT,
       "accuracy: %s%s%sno setting %s %s within %s. %s. %s. You can allow more, or ask for the least error in a time: "
       "`clast plan %s --within 10min`",
-      *accuracy->studied ? "by the study of " : "", accuracy->studied, *accuracy->studied ? ", " : "",
+      *accuracy->place ? "by the study of " : "", accuracy->place, *accuracy->place ? ", " : "",
       a_guess ? "is known to give" : "gives", quantity, show_width(campaign, width, sizeof width), smallest,
       accuracy->advice, path);
 }
@@ -165,6 +167,25 @@ static const char *name_knobs(const struct accuracy_option *option, bool without
   return text;
 }
 
+/* The knobs of resolution that have levels in the scene and no part in the error: "grains, stop". Returns text. */
+static const char *name_unstudied(const struct campaign *campaign, const struct accuracy_option *option, char *text,
+                                  size_t size) {
+  *text = '\0';
+  for (const struct knob *knob = campaign->scene->kind->knobs; knob && knob->name; knob++) {
+    bool has = knob->group != KNOB_RESOLUTION || accuracy_is_varied(campaign, knob, "");
+    for (size_t k = 0; k < option->part_count; k++)
+      has |= option->part[k].knob == knob;
+    struct ladder levels;
+    struct error ignored;
+    OWNED char *notes = NULL;
+    if (has || ladder_make(knob, campaign->scene, NULL, &levels, &notes, &ignored) != STATUS_OK)
+      continue;
+    ladder_clear(&levels);
+    text_append(text, size, "%s%s", *text ? ", " : "", knob->name);
+  }
+  return text;
+}
+
 /* "+- 0.05 or more". Returns text. */
 static const char *show_least(const struct accuracy *accuracy, double point_s, const char *unit, char *text,
                               size_t size) {
@@ -214,19 +235,25 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
   if (option->beyond > 0)
     snprintf(beyond, sizeof beyond, ", %.2g%s beyond the levels", option->beyond, unit);
   words_print(out, before,
-              "%s \xc2\xb1 %.2g%s%s%s, resolution %s%s (%s)%s and the rest seeds, with %s and %" PRId64
+              "%s%s%s \xc2\xb1 %.2g%s%s%s, resolution %s%s (%s)%s and the rest seeds, with %s and %" PRId64
               " seeds a point%s",
-              campaign->accuracy_quantity, option->total, unit, more, share,
-              study_show_error(option->error, option->open, resolution), unit,
+              accuracy->place, *accuracy->place ? ": " : "", campaign->accuracy_quantity, option->total, unit, more,
+              share, study_show_error(option->error, option->open, resolution), unit,
               name_knobs(option, false, knobs, sizeof knobs), beyond, chosen, option->seeds, cost);
   if (option->deviation >= 0 && !(option->deviation > SAMPLE_ROUNDING * fabs(option->mean)))
     words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: %s", option->n,
                 option->share ? "the error holds that so many may miss a rare outcome" : "more of them tell no more");
-  if (*accuracy->studied)
+  if (*name_unstudied(campaign, option, knobs, sizeof knobs))
+    words_print(out, before, "not in this error, as no study compares its levels: %s", knobs);
+  if (option->n < FEW_RUNS && 2 * option->total - accuracy_resolution(option) > option->within)
     words_print(out, before,
-                "this is known of %s; the others have errors and means of their own, which may be wider: the table at "
-                "the end of the run tells them",
-                accuracy->studied);
+                "the scatter is that of %" PRId64 " runs only: after the campaign the same command counts its runs, "
+                "too, and takes more seeds if they are needed",
+                option->n);
+  if (*accuracy->place && accuracy->some_studied)
+    words_print(out, before,
+                "other points have errors and means of their own, which may be wider: the table at the end of the run "
+                "tells them");
   if (*accuracy->widest_point)
     words_print(out, before, "%s", accuracy->widest_point);
   if (!in_time)

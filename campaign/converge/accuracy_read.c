@@ -54,11 +54,8 @@ static status read_places(struct accuracy_finding *finding, struct error *error)
     *place = (struct accuracy_place){.work = scene ? accuracy_work(scene) : (double)NAN, .own_s = NAN};
     if (scene)
       TRY(store_point_find(finding->store, scene, &place->point, error));
-    accuracy_rows(finding, place->point, &count);
-    if (place->point && count) {
-      place->scene = scene;
-      scene = NULL;
-    }
+    place->scene = scene;
+    scene = NULL;
   }
   finding->accuracy->point_s = finding->campaign->accuracy_time / (double)design_points(walk.design);
   ANSWER runs = ask_run_costs(finding->store, finding->campaign->scene->kind->results_version, error);
@@ -68,7 +65,7 @@ static status read_places(struct accuracy_finding *finding, struct error *error)
         finding->places[i].own_s = answer_real(&runs, 1);
   for (size_t i = 0; i < finding->place_count; i++) {
     const struct convergence_row *rows = accuracy_rows(finding, finding->places[i].point, &count);
-    for (size_t r = 0; finding->places[i].scene && r < count; r++)
+    for (size_t r = 0; finding->places[i].point && r < count; r++)
       if (rows[r].base && rows[r].cpu > 0)
         finding->places[i].own_s = rows[r].cpu;
   }
@@ -146,13 +143,13 @@ static status read_studies(struct accuracy_finding *finding, struct error *error
   TRY(take_study(finding, widest->scene, widest->point, error));
   char inputs[256];
   if (widest == &own && finding->place_count > 1)
-    snprintf(accuracy->studied, sizeof accuracy->studied, "the scene with its own values of what varies");
+    snprintf(accuracy->place, sizeof accuracy->place, "the scene with its own values of what varies");
   else if (finding->place_count > 1)
-    snprintf(accuracy->studied, sizeof accuracy->studied, "point %zu, %s", (size_t)(widest - finding->places) + 1,
+    snprintf(accuracy->place, sizeof accuracy->place, "point %zu, %s", (size_t)(widest - finding->places) + 1,
              design_axis_show_point(campaign->axis_count, campaign->axes, widest->scene->inputs, inputs,
                                     sizeof inputs));
-  finding->all_studied = studied == finding->place_count;
-  return STATUS_OK;
+  accuracy->some_studied = studied < finding->place_count;
+  return accuracy_learn(finding, error);
 }
 
 /* Names the studied point at which the chosen setting is farthest from the accuracy, if one misses it. */
@@ -165,7 +162,7 @@ static void name_widest(const struct accuracy_finding *finding) {
     const struct accuracy_place *place = &finding->places[i];
     size_t count;
     const struct convergence_row *rows = accuracy_rows(finding, place->point, &count);
-    for (size_t r = 0; place->scene && place->point != finding->point && r < count; r++) {
+    for (size_t r = 0; place->point && place->point != finding->point && r < count; r++) {
       const bool is = chosen->own
                           ? rows[r].base
                           : strcmp(rows[r].knob, chosen->knob) == 0 && strcmp(rows[r].setting, chosen->setting) == 0;
@@ -183,14 +180,19 @@ static void name_widest(const struct accuracy_finding *finding) {
                campaign_unit(campaign, campaign->accuracy_quantity, unit), rows[r].mean);
     }
   }
-  if (accuracy->chosen < accuracy->count && finding->all_studied && !*accuracy->widest_point)
-    *accuracy->studied = '\0';
 }
 
 /* There is no study that starts from the settings of this campaign. They may be a level of another one. */
 static status no_study(const struct accuracy_finding *finding, const char *store, struct error *error) {
   const char *quantity = finding->campaign->accuracy_quantity, *path = finding->accuracy->path;
   char level[300] = "";
+  for (size_t i = 0; !finding->quantity.row && i < finding->place_count; i++)
+    if (finding->places[i].own_s > 0)
+      return status_fail(error, STATUS_CONTENT,
+                         "accuracy: %s has runs of this campaign and no %s with a setting of theirs: too few fragments "
+                         "break off. Take another quantity, or make a study with more seeds: `clast converge %s "
+                         "--quantity %s --seeds 32`",
+                         store, quantity, path, quantity);
   for (size_t r = 0; r < finding->row_count && !*level; r++)
     for (size_t i = 0; i < finding->place_count && !*level; i++)
       if (finding->places[i].point && finding->rows[r].point == finding->places[i].point)

@@ -122,11 +122,14 @@ static status add_level(struct making *making, const struct field_value *value, 
   return STATUS_OK;
 }
 
-/* Levels by text: the user's, or the choices of the knob. */
+/* Levels by text: the user's, or the choices of the knob. The scene's own may be written with fewer digits. */
 static status add_text(struct making *making, const char *text, struct error *error) {
+  const struct field_value *own = &making->own[0];
   struct field_value value = {0};
   if (field_parse(making->rows[0], text, &value, error) != STATUS_OK)
     return STATUS_USAGE;
+  if (value.kind == FIELD_REAL && fabs(value.number - own->number) < 1e-5 * fabs(own->number))
+    value = *own;
   return add_level(making, &value, error);
 }
 

@@ -123,8 +123,8 @@ char *study_show_setting(const struct engine_kind *kind, const struct knob *knob
                          char text[STUDY_SETTING]);
 /* The error of a setting as on every screen: "0.061", or ">= 0.061" when it is no bound. Returns text. */
 const char *study_show_error(double error, bool at_least, char text[UNCERTAINTY_TEXT]);
-/* The table of knobs of every engine. */
-status study_print_knobs(const struct engine_kind *kind, enum table_format format, struct error *error);
+/* The table of knobs of every engine, or of those that have levels in a scene. */
+status study_print_knobs(const struct scene *scene, enum table_format format, struct error *error);
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
  * programs the rows of convergence_table. */
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);

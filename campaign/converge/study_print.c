@@ -12,12 +12,29 @@
 #include "db/store/views.h"
 #include "schemas/memory.h"
 
-status study_print_knobs(const struct engine_kind *kind, enum table_format format, struct error *error) {
+/* Has the knob levels in the scene? Else prints why not. */
+static bool applies(const struct knob *knob, const struct scene *scene) {
+  struct ladder levels;
+  struct error why;
+  OWNED char *notes = NULL;
+  if (scene && ladder_make(knob, scene, NULL, &levels, &notes, &why) != STATUS_OK) {
+    words_print(stderr, "", "clast: not in this scene: %s", why.message);
+    return false;
+  }
+  if (scene)
+    ladder_clear(&levels);
+  return true;
+}
+
+status study_print_knobs(const struct scene *scene, enum table_format format, struct error *error) {
+  const struct engine_kind *kind = scene ? scene->kind : NULL;
   TABLE table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "knob", "group", "input", "meaning", NULL});
   for (size_t i = 0; i < (kind ? 1 : engine_count()); i++) {
     const struct engine_kind *of = kind ? kind : engine_at(i);
     for (const struct knob *knob = of->knobs; knob && knob->name; knob++) {
+      if (!applies(knob, scene))
+        continue;
       table_text(table, of->name);
       table_text(table, knob->name);
       table_text(table, engine_knob_groups[knob->group]);
@@ -55,6 +72,7 @@ struct printing {
   const struct study *study;
   struct store *store;
   bool hidden[LEGEND]; /* columns that the last table left out */
+  bool compared;       /* a table was printed */
 };
 
 /* Of the runs at the points `in` (ids, comma-separated) with the seeds of the study. */
@@ -373,7 +391,7 @@ static status print_missing(const struct printing *printing, const struct study_
     fprintf(out, "; run, but without a usable result:%s (%s)", ran,
             printing->study->quantity[quantity].row
                 ? "`clast status` tells how runs ended, `clast explain` when the result is off"
-                : "too few fragments for an exponent: more seeds give more");
+                : "too few fragments for an exponent: more seeds give more, if any break off");
   if (*lone)
     fprintf(out, "; with results, but a comparison takes two levels with %" PRId64 " seeds:%s",
             printing->study->rule.first_seeds, lone);
@@ -484,6 +502,7 @@ static status print_quantity(struct printing *printing, size_t from, size_t quan
   if (ran)
     words_print(stdout, "", "%s%s%s, quantity %s%s%s%s", base->name, *point ? ", " : "", point, what->name,
                 named ? " (" : "", named ? unit : "", named ? ")" : "");
+  printing->compared |= ran;
   if (ran)
     TRY(print_levels(printing, from, quantity, count, found, error));
   free(sentences);
@@ -550,7 +569,7 @@ status study_print(const struct study *study, enum table_format format, bool qui
   struct ask_doubts sum;
   TRY(sum_doubts(&printing, study->ladder_count, study->quantity_count, &sum, error));
   uncertainty_doubts(&sum, stderr);
-  if (quiet)
+  if (quiet || !printing.compared)
     return STATUS_OK;
   for (size_t k = 0; k < LEGEND; k++)
     if (!printing.hidden[k])

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "campaign/converge/study.h"
+#include "campaign/terminal/words.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
 
@@ -50,12 +51,28 @@ static bool is_narrow(const struct study *study, const struct study_ladder *ladd
   struct study_found found;
   for (size_t q = 0; q < study->quantity_count; q++) {
     study_find(study, ladder, q, &found);
+    const bool needs_all = !study->quantity[q].row; /* an exponent: more seeds may give a level one */
     const double scale = study->rule.relative ? fabs(found.rows[study_reference(ladder)].mean) : 1;
     for (size_t l = 0; l < found.count; l++)
-      if (!ladder->left_out[l] && !(found.rows[l].bias_half_width <= study->rule.within * scale))
+      if (!ladder->left_out[l] && (needs_all || found.rows[l].n > 0) &&
+          !(found.rows[l].bias_half_width <= study->rule.within * scale))
         return false;
   }
   return true;
+}
+
+/* Has some quantity two levels with results? An exponent may need more seeds. */
+static bool compares(const struct study *study, const struct study_ladder *ladder) {
+  struct study_found found;
+  for (size_t q = 0; q < study->quantity_count; q++) {
+    int levels = 0;
+    study_find(study, ladder, q, &found);
+    for (size_t l = 0; l < found.count; l++)
+      levels += found.rows[l].n > 0;
+    if (levels > 1 || !study->quantity[q].row)
+      return true;
+  }
+  return false;
 }
 
 /* Wall time (s) on one slot of the missing runs among the level's first `seeds` seeds. */
@@ -260,7 +277,9 @@ static void judge(struct rounds *rounds) {
   if (rounds->probe)
     return;
   ladder->narrow = is_narrow(study, ladder);
-  if (ladder->narrow)
+  if (!isnan(study->rule.within) && !compares(study, ladder))
+    end_ladder(ladder, "no two levels have results");
+  else if (ladder->narrow)
     end_ladder(ladder,
                isnan(study->rule.within) ? "one round was asked for" : "every bias is known to the wanted width");
   else if (study->budget_spent)
@@ -427,11 +446,34 @@ static status run_study(struct study *study, const struct study_request *request
   return request->picture ? study_print_picture(study, request->picture, error) : STATUS_OK;
 }
 
+/* Names what withholds a result with the scene's own settings, before anything is computed. Returns whether there is
+ * one. */
+static bool tell_withheld(const struct study *study, const struct scene *scene) {
+  const struct condition *list = scene->kind->conditions;
+  const condition_set broken = condition_before(list, scene->inputs, NULL);
+  bool any = false;
+  for (size_t k = 0; list && list[k].word; k++)
+    for (size_t q = 0; q < study->quantity_count; q++) {
+      char says[CONDITION_SAYS];
+      if (!(broken >> k & 1) || !list[k].withheld || !study->quantity[q].row ||
+          condition_mark(list, list[k].word, study->quantity[q].column) != CONDITION_WITHHELD)
+        continue;
+      words_print(stderr, "", "clast: warning: %s is withheld with the scene's own settings: %s%s%s (clast explain %s)",
+                  study->quantity[q].name, condition_says(&list[k], says), list[k].remedy ? "; " : "",
+                  list[k].remedy ? list[k].remedy : "", list[k].word);
+      any = true;
+    }
+  return any;
+}
+
 status study_launch(const struct study_request *request, const struct command_line *line, struct error *error) {
   OWNED struct study_subject *subject = memory_small(1, sizeof *subject);
   status code = study_request_read(request, line->arguments[0], subject, error);
   if (code == STATUS_OK && subject->scene_count)
     code = engine_ready(subject->scenes[0]->kind, subject->scenes[0]->inputs, error);
+  for (size_t s = 0; code == STATUS_OK && !launch_other_rank() && s < subject->scene_count; s++)
+    if (tell_withheld(&subject->study, subject->scenes[s]))
+      break;
   if (code == STATUS_OK)
     code = run_study(&subject->study, request, line, error);
   study_request_clear(subject);

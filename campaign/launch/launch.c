@@ -207,7 +207,7 @@ static status tell_accuracy(struct store *store, const struct campaign *campaign
   enum estimates_window window;
   bool exponent, of_outcome;
   struct error ignored;
-  if (field_is_off(campaign->accuracy_within))
+  if (field_is_off(campaign->accuracy_within) && field_is_off(campaign->accuracy_time))
     return STATUS_OK;
   TRY(estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, error));
   if (exponent)

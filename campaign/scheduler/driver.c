@@ -11,6 +11,7 @@
 #include <uthash.h>
 
 #include "campaign/scheduler/point.h"
+#include "engine/grow.h"
 #include "schemas/clock.h"
 #include "schemas/memory.h"
 
@@ -24,6 +25,14 @@ enum { WINDOW = 1024 };
 struct seen {
   int64_t id;
   UT_hash_handle hh;
+};
+
+/* The runs of a series that gave no result, each once. */
+struct failures {
+  struct failure {
+    int64_t point, replicate;
+  } * run; /* owned */
+  size_t count, room;
 };
 
 struct driver {
@@ -46,9 +55,10 @@ struct driver {
   int64_t started_done;             /* runs finished in this invocation, for the rate */
   double finished_s;                /* their wall time */
   double begin, last_left, seconds_left;
-  int64_t fields_missing; /* fields files of stored runs that no longer exist, or are damaged */
-  int64_t wanted;         /* runs that the points met so far need */
-  bool in_series;         /* one of several campaigns, which differ on purpose */
+  int64_t failed_again;      /* of summary.runs_failed those that an earlier campaign of the series has counted */
+  struct failures *failures; /* of the series, whose campaigns differ on purpose; borrowed. NULL: one campaign */
+  int64_t fields_missing;    /* fields files of stored runs that no longer exist, or are damaged */
+  int64_t wanted;            /* runs that the points met so far need */
 };
 
 struct driver *driver_new(const struct campaign *campaign) {
@@ -129,6 +139,19 @@ static void count_doubts(struct driver *driver, const struct point_replicate *re
   driver->summary.runs_doubtful += replicate->doubtful;
 }
 
+/* A run without a result. The next campaigns of a series find it in the store. */
+static void count_failure(struct driver *driver, int64_t point, int64_t replicate) {
+  struct failures *all = driver->failures;
+  driver->summary.runs_failed++;
+  for (size_t i = 0; all && i < all->count; i++)
+    if (all->run[i].point == point && all->run[i].replicate == replicate) {
+      driver->failed_again++;
+      return;
+    }
+  if (all && grow_room(&all->run, &all->room, all->count + 1, sizeof *all->run))
+    all->run[all->count++] = (struct failure){point, replicate};
+}
+
 /* Counts a run that has results, stored or new. */
 static void count_run(struct driver *driver, struct point *point, int64_t r, const struct ask_run_of_point *run,
                       bool fields) {
@@ -141,7 +164,8 @@ static void count_run(struct driver *driver, struct point *point, int64_t r, con
   point->replicates[r].fields = fields || run->state == OUTCOME_INVALID;
   point_cost_learn(&driver->cost, &point->cost, run->wall_s);
   sample_add(&driver->moments, value);
-  summary->runs_failed += !usable && !run->excluded;
+  if (!usable && !run->excluded)
+    count_failure(driver, point->id, r);
   summary->runs_excluded += run->excluded;
   summary->runs_surplus += run->surplus;
   summary->runs_censored += usable && run->state == OUTCOME_END_TIME;
@@ -292,7 +316,7 @@ static status tell_hidden_inputs(struct driver *driver, const struct scene *scen
   TRY(answer_end(&hidden));
   for (size_t i = 0; i < count; i++)
     TRY(scheduler_show_input(driver->scheduler->store, differs[i], error));
-  if (count == 0 || driver->in_series) /* the campaigns of a series differ on purpose */
+  if (count == 0 || driver->failures) /* the campaigns of a series differ on purpose */
     return STATUS_OK;
   snprintf(campaign, sizeof campaign, "campaign %lld", (long long)driver->summary.campaign_id);
   snprintf(
@@ -510,7 +534,7 @@ static status take_run(struct driver *driver, const struct scheduler_run *run, c
   case SCHEDULER_FAILED: break;
   }
   point_finish_replicate(point, run->replicate, POINT_FAILED, NAN);
-  driver->summary.runs_failed++;
+  count_failure(driver, point->id, run->replicate);
   return end->report ? judge_failures(driver, true, error) : STATUS_OK;
 }
 
@@ -616,7 +640,7 @@ static void tick(void *context, int running, bool last) {
       .rate = rated ? (double)driver->started_done / elapsed : NOTHING,
       .seconds_left = last ? NOTHING : time_left(driver, now),
       /* The table has the mean of the runs that count; those of a study differ in their settings. */
-      .quantity = last || driver->in_series ? NULL : quantity,
+      .quantity = last || driver->failures ? NULL : quantity,
       .mean = mean,
       .reached = widest ? widest->reached * driver->campaign->until_scale : 0,
       .point = widest && points > 1 ? widest->id : 0,
@@ -624,7 +648,7 @@ static void tick(void *context, int running, bool last) {
       .unit = driver->campaign->until_unit,
       .asked = driver->campaign->until_half_width * driver->campaign->until_scale,
       .doubtful = summary->runs_doubtful > 0,
-      .part = driver->in_series,
+      .part = driver->failures != NULL,
   };
   progress_update(progress, &state, now, last);
 }
@@ -697,6 +721,7 @@ struct running {
   struct driver *driver;     /* owned; NULL between two campaigns */
   int out;                   /* runs on slots */
   bool finished;             /* no campaign is left */
+  struct failures failures;  /* owned */
 };
 
 static status begin_series(void *context, struct scheduler *scheduler, struct error *error) {
@@ -711,7 +736,7 @@ static status begin_campaign(struct running *running, struct error *error) {
   if (running->finished)
     return STATUS_OK;
   struct driver *driver = driver_new(running->campaign);
-  driver->in_series = true;
+  driver->failures = &running->failures;
   const status code = begin(driver, running->scheduler, error);
   if (code == STATUS_OK)
     running->driver = driver;
@@ -725,7 +750,7 @@ static status end_campaign(struct running *running, const char *outcome, struct 
   const struct driver_summary summary = running->driver->summary;
   struct store *store = running->scheduler->store;
   running->summary->runs_done += summary.runs_done;
-  running->summary->runs_failed += summary.runs_failed;
+  running->summary->runs_failed += summary.runs_failed - running->driver->failed_again;
   running->summary->runs_reused += summary.runs_reused;
   if (!running->summary->session_id)
     running->summary->session_id = summary.session_id;
@@ -796,6 +821,7 @@ status driver_run_series(const struct series *series, struct farm *farm, const s
                                             .end = end_series};
   const status code = scheduler_compute(&planner, farm, options, error);
   campaign_free(running.campaign); /* one that could not begin */
+  free(running.failures.run);
   return code;
 }
 

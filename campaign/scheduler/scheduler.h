@@ -190,8 +190,8 @@ struct series {
 };
 
 struct series_summary {
-  int64_t runs_done, runs_failed, runs_reused;
-  int64_t session_id; /* of its first campaign; 0: none began */
+  int64_t runs_done, runs_failed, runs_reused; /* each failed one once */
+  int64_t session_id;                          /* of its first campaign; 0: none began */
   double cpu_s;
 };
 

@@ -253,8 +253,8 @@ TEST(the_study_with_the_finest_level_counts) {
 }
 
 /* Every setting has the parts of all knobs of its studies, with a bound or without. A time step that a study had no
- * time for, or that is finer than all its levels, has the error of the next coarser level; one that is coarser than all
- * has the largest. */
+ * time for, or that lies between its levels, or is finer than all of them, has the error of the next coarser level,
+ * which is a bound where that level has one; one that is coarser than all has the largest, which is none. */
 TEST(every_setting_has_the_parts_of_all_knobs) {
   static const struct {
     const char *step;
@@ -264,7 +264,10 @@ TEST(every_setting_has_the_parts_of_all_knobs) {
                {"0.25 us", 0.03, 0.04 / (sqrt(2) - 1)},
                {"2 us", 0.04, 0.04 / (sqrt(2) - 1)},
                {"8 us", 0.05, NAN}};
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+  const size_t count = sizeof cases / sizeof cases[0];
+  for (size_t c = 0; c < 2 * count; c++) {
+    const size_t i = c % count;
+    const bool no_limit = c < count;
     char text[200];
     snprintf(text, sizeof text, HEAD "set: {fidelity.time_step: %s}\naccuracy: {within: 0.3}\n", cases[i].step);
     struct campaign *first = campaign_of(HEAD "accuracy: {within: 0.3}\n"), *second = campaign_of(text);
@@ -272,10 +275,10 @@ TEST(every_setting_has_the_parts_of_all_knobs) {
     OWNED_BY(accuracy_clear) struct accuracy accuracy;
     OK(store_open_writer(fixture_path(path, "all-knobs"), &store, NULL, 0, &error));
     add_study(store, first, "time_step", 4,
-              (const struct level[]){{"4e-6", 0.05, 1e-4, 3, false, true, 4e-6},
-                                     {"2e-6", 0.04, 1e-4, 5, false, true, 2e-6},
-                                     {"1e-6", 0.03, 1e-4, 10, true, true, 1e-6},
-                                     {"5e-7", NAN, NAN, NAN, false, true, 5e-7}});
+              (const struct level[]){{"4e-6", 0.05, 1e-4, 3, false, no_limit, 4e-6},
+                                     {"2e-6", 0.04, 1e-4, 5, false, no_limit, 2e-6},
+                                     {"1e-6", 0.03, 1e-4, 10, true, no_limit, 1e-6},
+                                     {"5e-7", NAN, NAN, NAN, false, no_limit, 5e-7}});
     add_study(store, second, "grains", 3,
               (const struct level[]){{"0.02", 0.3, 1e-4, 5, false, false, 0.02},
                                      {"0.01069", 0.2, 1e-4, 10, true, false, 0.01069},
@@ -286,8 +289,11 @@ TEST(every_setting_has_the_parts_of_all_knobs) {
     for (size_t o = 0; o < 3; o++) {
       const struct accuracy_option *option = &accuracy.options[o];
       const double grains = option->own ? 0.2 : strcmp(option->setting, "0.02") == 0 ? 0.3 : 0.1;
-      assert_true(option->open && fabs(option->error - grains - cases[i].left) < 1e-12);
-      assert_true(isnan(cases[i].beyond) ? isnan(option->beyond) : fabs(option->beyond - cases[i].beyond) < 1e-12);
+      const bool bound = !no_limit && !isnan(cases[i].beyond);
+      assert_true(option->open == !bound && fabs(option->error - grains - cases[i].left) < 1e-12);
+      assert_true(bound                    ? option->beyond == 0
+                  : isnan(cases[i].beyond) ? isnan(option->beyond)
+                                           : fabs(option->beyond - cases[i].beyond) < 1e-12);
     }
     campaign_free(first);
     campaign_free(second);
@@ -311,11 +317,11 @@ TEST(the_point_that_needs_most_decides) {
     }
     OK(store_close(store, &error));
     OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
-    assert_true(accuracy.chosen == 0 && accuracy.options[0].error == 0.05 && !*accuracy.studied);
+    assert_true(accuracy.chosen == 0 && accuracy.options[0].error == 0.05 && !accuracy.some_studied);
     accuracy_clear(&accuracy);
     campaign->accuracy_within = 0.04;
     OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
-    assert_true(accuracy.chosen == accuracy.count && strstr(accuracy.studied, hard ? "point 2" : "point 1"));
+    assert_true(accuracy.chosen == accuracy.count && strstr(accuracy.place, hard ? "point 2" : "point 1"));
     assert_non_null(strstr(accuracy.advice, "--knob grains=0.01507m,0.00759m,0.003795m,0.01069m"));
   }
 }
@@ -361,12 +367,14 @@ TEST(levels_that_differ_little_are_enough) {
             (const struct level[]){{"2e-6", 0.012, 1e-4, 5, false, true, 2e-6},
                                    {"1e-6", 0.004, 1e-4, 10, true, true, 1e-6},
                                    {"5e-7", 0.004, 1e-4, 20, false, true, 5e-7}});
+  /* A knob whose other levels had no time or no result says nothing, and is no part of the error. */
+  add_study(store, campaign, "integrator", 1, (const struct level[]){{"verlet", NAN, 1e-4, 10, true, true, 0}});
   OK(store_close(store, &error));
   OK(accuracy_find(campaign, "t.yaml", path, &accuracy, &error));
   const struct accuracy_option *chosen = &accuracy.options[accuracy.chosen];
   assert_true(accuracy.count == 3 && accuracy.chosen == 0 && chosen->own && chosen->open);
   assert_true(chosen->error == 0.004 && fabs(chosen->beyond - fmax(0.012, 0.004 / (sqrt(2) - 1))) < 1e-12);
-  assert_true(chosen->total > chosen->error + chosen->beyond);
+  assert_true(chosen->total > chosen->error + chosen->beyond && chosen->part_count == 1);
   accuracy_clear(&accuracy);
   campaign->accuracy_within = 0.012;
   assert_int_equal(accuracy_settle(campaign, "t.yaml", path, ACCURACY_SILENT, NULL, &error), STATUS_CONTENT);
