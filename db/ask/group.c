@@ -179,7 +179,8 @@ static status judge_input(struct store *store, const char *name, const struct ch
                        choice->known[0] ? choice->known : "none");
   ANSWER from = answer_to(store, error,
                           "SELECT i.path FROM axis JOIN point_input i USING (path) JOIN point_input o ON o.point_id = "
-                          "i.point_id AND o.path = %Q GROUP BY i.path HAVING count(DISTINCT i.value) = count(DISTINCT "
+                          "i.point_id AND o.path = %Q GROUP BY i.path HAVING count(DISTINCT o.value) > 1 AND "
+                          "count(DISTINCT i.value) = count(DISTINCT "
                           "o.value) AND count(DISTINCT quote(i.value) || quote(o.value)) = count(DISTINCT o.value) "
                           "ORDER BY i.path LIMIT 1",
                           path);

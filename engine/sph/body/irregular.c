@@ -333,7 +333,7 @@ static status check_range(struct sph_grading *g, double particles, struct shells
         "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: give "
         "fidelity.particles within this range, or a %s fine_spacing (where it is not given: %s spacings_per_radius)",
         g->fine, ceil(fewest), floor(most), particles, particles < fewest ? "larger" : "smaller",
-        particles < fewest ? "less" : "more");
+        particles < fewest ? "fewer" : "more");
   return STATUS_OK;
 }
 
