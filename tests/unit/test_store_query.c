@@ -403,11 +403,13 @@ TEST(our_aggregates) {
 TEST(parameters_are_bound) {
   struct store *store = reader();
   const struct query_parameter two[] = {{"a", "3"}, {"b", "0.5"}};
-  const struct query_parameter text = {"a", "x'; DROP"};
+  const struct query_parameter text = {"a", "x'; DROP"}, seed = {"a", "9007199254740993"}; /* no double has it */
   struct rows rows;
   OK(keep(answer_to_user(store, "SELECT :a * :b AS x", 2, two, 0, &error), &rows));
   assert_string_equal(rows.text, "x\n1.5\n");
   OK(keep(answer_to_user(store, "SELECT typeof(:a) = 'text' AS x", 1, &text, 0, &error), &rows));
+  assert_string_equal(rows.text, "x\n1\n");
+  OK(keep(answer_to_user(store, "SELECT :a = 9007199254740993 AS x", 1, &seed, 0, &error), &rows));
   assert_string_equal(rows.text, "x\n1\n");
   assert_int_equal(keep(answer_to_user(store, "SELECT :a", 2, two, 0, &error), &rows), STATUS_USAGE);
   store_close(store, NULL);
