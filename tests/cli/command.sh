@@ -69,9 +69,9 @@ expect 0 "$clast" check mark2.db
 expect 65 "$clast" plan mark.yaml
 says "mark.yaml is a scene, not a campaign"; one_error
 expect 0 "$clast" converge mark-runs.yaml --list
-prints "settings"
+says "fewer than two named settings"
 expect 0 "$clast" converge mark.yaml --list --csv
-same "$(cut -d, -f2 out | tr '\n' ' ')" "knob a settings " "knobs of the scene alone"
+same "$(cut -d, -f2 out | tr '\n' ' ')" "knob a " "knobs of the scene alone"
 
 # ---- a program without the seed, and one without an element, say so before a run ----
 expect 0 "$clast" run mark-runs.yaml $word
