@@ -244,7 +244,7 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
     words_print(out, before, "all %" PRId64 " seeds of the study are equal with it: %s", option->n,
                 option->share ? "the error holds that so many may miss a rare outcome" : "more of them tell no more");
   if (*name_unstudied(campaign, option, knobs, sizeof knobs))
-    words_print(out, before, "not in this error, as no study compares its levels: %s", knobs);
+    words_print(out, before, "not studied, and not in this error: %s", knobs);
   if (option->n < FEW_RUNS && 2 * option->total - accuracy_resolution(option) > option->within)
     words_print(out, before,
                 "the scatter is that of %" PRId64 " runs only: after the campaign the same command counts its runs, "

@@ -216,7 +216,7 @@ assert all(a['point_cpu'] is None or a['point_cpu'] >= chosen['point_cpu'] for a
 PY
 ok "the plan takes the cheapest alternative"
 expect 0 "$clast" plan sharp.yaml
-prints "chosen"; prints "seeds a point"; prints "in doubt (!)"; prints "runs of the study: cut" # as at its own settings
+prints "chosen"; prints "seeds a point"; prints "not studied, and not in this error: grains, integrator"; prints "in doubt (!)"; prints "runs of the study: cut" # as at its own settings
 expect 0 "$clast" run sharp.yaml -j 2 --csv
 # The end of the run says whether the runs keep what the study promised.
 expect 0 "$clast" stats sharp.db --campaign sharp -Q largest_fraction --csv
