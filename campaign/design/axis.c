@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/engine.h"
 #include "schemas/unit.h"
 
 void design_axis_free_all(struct design_axis *axes, size_t count) {
@@ -194,6 +195,15 @@ static const char *word_of(const struct design_axis *axis, char path[FIELD_TEXT_
   return word ? word + 1 : path;
 }
 
+/* young_modulus is an input of the beams and a result of a block that is pulled. */
+static bool names_result(const char *word) {
+  for (size_t e = 0; e < engine_count(); e++)
+    for (size_t i = 0; i < engine_at(e)->results->count; i++)
+      if (strcmp(engine_at(e)->results->rows[i].path, word) == 0)
+        return true;
+  return false;
+}
+
 const char *design_axis_show_point(size_t count, const struct design_axis *axes, const void *inputs, char *text,
                                    size_t size) {
   *text = '\0';
@@ -201,9 +211,11 @@ const char *design_axis_show_point(size_t count, const struct design_axis *axes,
     struct field_value value;
     char shown[VALUE_SIZE], path[FIELD_TEXT_SIZE], other[FIELD_TEXT_SIZE];
     const char *word = word_of(&axes[i], path);
+    bool whole = names_result(word);
     for (size_t k = 0; k < count; k++)
-      if (k != i && strcmp(word, word_of(&axes[k], other)) == 0)
-        word = path; /* target.material and projectile.material */
+      whole |= k != i && strcmp(word, word_of(&axes[k], other)) == 0; /* target.material and projectile.material */
+    if (whole)
+      word = path;
     field_get(axes[i].row, inputs, &value);
     text_append(text, size, "%s%s %s", i ? ", " : "", word, design_axis_show(&axes[i], &value, shown, sizeof shown));
   }

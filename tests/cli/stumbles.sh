@@ -154,6 +154,9 @@ prints "a bin is empty (LSQ)"
 printf 'name: rocks\nscene: basalt-sphere\nset: {fidelity.particles: 1000, fidelity.projectile_spacing: 1}\nvary: {target.material: [basalt, granite]}\n' >rocks.yaml
 expect 0 "$clast" plan rocks.yaml --no-trial
 prints "the most expensive point, material "
+printf 'name: bars\nscene: uniaxial\nvary: {beam.young_modulus: [5 GPa, 6 GPa]}\n' >bars.yaml
+expect 0 "$clast" plan bars.yaml --no-trial
+prints "the most expensive point, beam.young_modulus " # young_modulus alone is a result
 tiny exact 'accuracy: {quantity: largest_fraction, within: 5 %}'; sed -i /^seeds/d exact.yaml
 expect 65 "$clast" plan exact.yaml --no-trial
 says "accuracy: exact.db does not exist yet, so it has no study of largest_fraction"
@@ -180,4 +183,4 @@ printf '%s\n' 'name: min' 'scene: disruption@draft' 'set: {fidelity.particles: 1
   '  impact.specific_energy: [300 J/kg, 3000 J/kg]' >min.yaml
 expect 65 "$clast" find min.yaml --input specific_energy --set target.material=basalt --level 0.5
 says "(at target.material.name ice, impact.specific_energy 300 J/kg)"; one_error
-done_after 53
+done_after 54
