@@ -56,6 +56,12 @@ grep -qx 'names of good' out/good.txt || fail "good was not run in its folder: $
 ! grep -q 'reached' out/bad.txt || fail "bad went on after its failure"
 expect 0 '^good: ended well before$' good.md
 expect 1 '^failed: bad$' bad.md
+page long $'```sh\ntouch ../begun\nsleep 100\n```\nCost: 100 s of a processor.'
+env --default-signal=INT "$repeat" --programs "$build" --output "$work/out" long.md >said 2>&1 &
+until [ -e out/begun ] || ! kill -0 $!; do sleep 0.05; done
+kill -INT $!
+code=0; wait $! || code=$?
+[ "$code" -eq 75 ] && grep -q stopped said || fail "after Ctrl-C: exit $code, $(<said)"
 expect 1 'no-cost.md: .* no line Cost' no-cost.md
 expect 1 'no-block.md: .* no block sh' no-block.md
 expect 1 'no page nowhere' nowhere
