@@ -366,8 +366,8 @@ void ask_columns_show(const struct ask_column *column, const struct query_value 
   text_powers(text, size);
 }
 
-/* Rows of results are for all engines; of one in the plane, masses are per metre of thickness, and densities over them
- * are, too. With runs of both kinds the column has no unit. */
+/* In stores whose column_doc an older build wrote, masses of an engine in the plane are in kg. They are per metre of
+ * thickness, and densities over them are, too. With runs of both kinds the column has no unit. */
 static status per_metre(struct store *store, char *unit, size_t size, struct error *error) {
   bool plane = false, other = false;
   const bool inverse = strcmp(unit, "1/kg") == 0;
@@ -390,8 +390,8 @@ static struct answer ask_units(struct store *store, const char *column, struct e
       store, error,
       "SELECT column_name, ifnull((SELECT min(unit) FROM column_doc r WHERE r.column_name = d.column_name "
       "AND r.table_name IN (SELECT 'result_' || engine FROM point)), min(unit)), NULL FROM column_doc d WHERE "
-      "unit <> '1' AND table_name NOT LIKE 'result\\_%%' ESCAPE '\\' AND column_name = ifnull(%Q, "
-      "column_name) GROUP BY column_name HAVING count(DISTINCT unit) = 1",
+      "unit NOT IN ('1', 'kg or kg/m', '1/kg or m/kg') AND table_name NOT LIKE 'result\\_%%' ESCAPE '\\' AND "
+      "column_name = ifnull(%Q, column_name) GROUP BY column_name HAVING count(DISTINCT unit) = 1",
       column);
 }
 

@@ -108,7 +108,7 @@ edit "update point_input set path = path || char(0) || 'x' where point_id = 1 an
 edit "delete from attempt where attempt_id = 2" "table attempt: 12 rows were stored, and 11 are there"
 edit "delete from table_digest where table_name = 'axis'" "table axis: no number of rows were stored, and $(number edited.db 'select count(*) from axis') are there"
 edit "update bin set upper = upper * (1 + 2.3e-16) where bin = (select min(bin) from bin)" "its edges"
-edit "update column_doc set unit = 'g' where table_name = 'points' and unit = 'kg' and column_name = 'mean_fragment_mass_mean'" "its unit is g, not kg"
+edit "update column_doc set unit = 'g' where table_name = 'points' and unit = 'kg/m' and column_name = 'mean_fragment_mass_mean'" "its unit is g, not kg/m"
 
 # A store of a program without these digests.
 cp edited.db older.db

@@ -53,6 +53,7 @@ with clast.open("example.db") as store:
         assert [value] == [p["largest_fraction_mean"] for p in points if (p["threshold_angle"], p["threshold_strain"]) == (angle, strain)]
     # units, and metadata for Datasette from the same table
     assert store.unit("threshold_angle") == "rad" and store.unit("largest_fraction") == ""
+    assert [store.unit(of) for of in ("total_mass", "mean_fragment_mass_mean", "lower", "density")] == ["kg/m", "kg/m", "kg/m", "m/kg"]
     try:
         store.unit("largest_fractoin")
         raise SystemExit("an unknown column has a unit")
