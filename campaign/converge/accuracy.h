@@ -23,7 +23,7 @@ struct accuracy_part {
 struct accuracy_option {
   char knob[64], setting[64];
   bool own;          /* the scene's own settings */
-  bool extrapolated; /* finer than any level that was run: error by the law, cost by the engine's measure of work */
+  bool extrapolated; /* finer than any level of the study: error by the law, cost by the engine's measure of work */
   bool open;         /* the error is no bound */
   double error;      /* change by finer settings of all knobs together, in the quantity's SI unit, as on every screen */
   int64_t point;     /* in the store */
@@ -33,7 +33,7 @@ struct accuracy_option {
                        the option is chosen for a time only. Else 0 */
   double mean;      /* of an extrapolated one that of the finest level with runs */
   int64_t n;        /* seeds of this mean */
-  bool learned;     /* of all runs of the store, not of the study alone */
+  bool learned;     /* mean and deviation of all runs of the store, not of the study alone */
   double within;    /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
   bool share;       /* of a share, whose intervals in tables are wider than Student's */
   double deviation; /* standard deviation between seeds */

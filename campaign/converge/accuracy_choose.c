@@ -363,11 +363,33 @@ static status learn(const struct accuracy_finding *finding, struct accuracy_opti
   return STATUS_OK;
 }
 
+/* Scatter over seeds is the scene's more than the setting's: a setting with few runs has at least that of the many runs
+ * of another one. */
+static void share_scatter(struct accuracy_finding *finding, const struct accuracy_option *of) {
+  struct accuracy *accuracy = finding->accuracy;
+  for (size_t i = 0; of->n >= ACCURACY_FEW_RUNS && i < accuracy->count; i++) {
+    struct accuracy_option *option = &accuracy->options[i];
+    if (option->learned || option->n >= ACCURACY_FEW_RUNS || !(option->deviation < of->deviation))
+      continue;
+    option->deviation = of->deviation;
+    count_seeds(accuracy, option);
+    sum_up(option);
+  }
+}
+
 status accuracy_learn(struct accuracy_finding *finding, struct error *error) {
   struct accuracy *accuracy = finding->accuracy;
-  const bool in_time = !isnan(accuracy->point_s); /* the same command must not take the time again */
-  while (!in_time && accuracy->chosen < accuracy->count && !accuracy->options[accuracy->chosen].learned) {
-    TRY(learn(finding, &accuracy->options[accuracy->chosen], error));
+  const bool in_time = !isnan(accuracy->point_s);
+  while (accuracy->chosen < accuracy->count && !accuracy->options[accuracy->chosen].learned) {
+    struct accuracy_option *chosen = &accuracy->options[accuracy->chosen];
+    const int64_t seeds = chosen->seeds;
+    TRY(learn(finding, chosen, error));
+    if (in_time) { /* the same command must not take the time again */
+      chosen->seeds = seeds;
+      sum_up(chosen);
+      return STATUS_OK;
+    }
+    share_scatter(finding, chosen);
     sort_and_choose(accuracy);
   }
   return STATUS_OK;

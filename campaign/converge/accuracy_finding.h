@@ -5,6 +5,7 @@
 #include "campaign/converge/study.h"
 
 enum { ACCURACY_FEWEST_SEEDS = 3, ACCURACY_POINTS = 1000 };
+enum { ACCURACY_FEW_RUNS = 10 }; /* the true standard deviation may be twice that of fewer */
 
 struct accuracy_finding {
   const struct campaign *campaign;

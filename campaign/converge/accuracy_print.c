@@ -8,8 +8,6 @@
 #include "campaign/terminal/words.h"
 #include "schemas/memory.h"
 
-enum { FEW_RUNS = 10 }; /* the true standard deviation may be twice that of fewer */
-
 /* "particles = 40000", "stop = 0.0012 s", "the scene's own settings". */
 static void name_option(const struct campaign *campaign, const struct accuracy_option *option, char *text,
                         size_t size) {
@@ -63,8 +61,8 @@ static status out_of_reach(const struct accuracy *accuracy, const struct campaig
            a_guess      ? " (a guess: no limit is seen, so that it may be much larger)"
            : best->open ? " (a guess, as no limit is seen)"
                         : "",
-           chosen, best->extrapolated ? ", finer than any run: the finest level's" : ", whose", best->mean, unit,
-           best->n);
+           chosen, best->extrapolated ? ", finer than any level of the study: the finest one's" : ", whose", best->mean,
+           unit, best->n);
   if (best->open && !(least > 0))
     snprintf(smallest, sizeof smallest,
              "No run of the study differs between the settings, which does not tell how far "
@@ -245,7 +243,7 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
                 option->share ? "the error holds that so many may miss a rare outcome" : "more of them tell no more");
   if (*name_unstudied(campaign, option, knobs, sizeof knobs))
     words_print(out, before, "not studied, and not in this error: %s", knobs);
-  if (option->n < FEW_RUNS && 2 * option->total - accuracy_resolution(option) > option->within)
+  if (option->n < ACCURACY_FEW_RUNS && 2 * option->total - accuracy_resolution(option) > option->within)
     words_print(out, before,
                 "the scatter is that of %" PRId64 " runs only: after the campaign the same command counts its runs, "
                 "too, and takes more seeds if they are needed",
@@ -275,7 +273,9 @@ static status alternatives_json(const struct accuracy *accuracy, const struct ca
     } times[] = {{"error_in_half_the_time", 0.5}, {"error_in_the_time", 1}, {"error_in_twice_the_time", 2}};
     for (size_t i = 0; i < sizeof times / sizeof times[0]; i++) {
       bool open; /* column `known` tells it of each option */
-      const double error_then = accuracy_least(accuracy, times[i].factor * accuracy->point_s, &open);
+      const double error_then = times[i].factor == 1 && accuracy->chosen < accuracy->count
+                                    ? accuracy->options[accuracy->chosen].total
+                                    : accuracy_least(accuracy, times[i].factor * accuracy->point_s, &open);
       fprintf(out, isnan(error_then) ? ", \"%s\": null" : ", \"%s\": %.17g", times[i].name, error_then);
     }
   }
@@ -311,7 +311,7 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     if (accuracy.chosen < accuracy.count && accuracy.options[accuracy.chosen].extrapolated)
       words_print(
           stdout, "",
-          "The chosen setting is finer than any level that was run. The part of its knob in the error is that of the "
+          "The chosen setting is finer than any level of the study. The part of its knob in the error is that of the "
           "finest level times (its step over that step)^%g, and its cost is by the engine's measure of work.",
           LIMIT_ORDER_LEAST);
     putchar('\n');

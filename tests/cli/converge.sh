@@ -283,6 +283,16 @@ expect 0 "$clast" run timed.yaml --within 200ms -j 2
 says "of processor time"
 expect 0 "$clast" run timed.yaml --within 200ms -j 2
 says "0 runs computed"
+# The plan tells mean and scatter of all these runs, not those of the study.
+expect 0 "$clast" plan timed.yaml --within 200ms --json --no-trial
+python - <<'PY'
+import json, sqlite3, statistics
+chosen, = [a for a in json.load(open('out'))['alternatives'] if a['choice'] == 'chosen']
+runs = [row[0] for row in sqlite3.connect('sharp.db').execute("select largest_fraction from run join campaign_point using (point_id) "
+    "join campaign using (campaign_id) where name = 'timed' and not surplus")]
+assert abs(chosen['mean'] - statistics.mean(runs)) < 1e-12 and len(runs) >= chosen['seeds'], (chosen, len(runs))
+PY
+ok "a plan of runs that are there"
 expect 65 "$clast" run timed.yaml --within 1us -j 2
 says "too short"
 expect 64 "$clast" run timed.yaml --within 10
@@ -768,4 +778,4 @@ expect 0 "$clast" converge whole.yaml -Q beta,young_modulus --knob time_step=1.0
 prints "1e-06 s *"
 expect 65 "$clast" plan whole.yaml
 says "too few fragments break off"
-done_after 192
+done_after 194
