@@ -19,7 +19,7 @@ export function table(caption, headings, rows, sort) {
   const head = headings.map((heading, i) => element('th', {scope: 'col'},
     sort ? element('button', {type: 'button', click: () => sort(i)}, heading) : heading));
   const lines = rows.map((row) => element('tr', {}, ...row.map((cell, i) =>
-    element('td', {'data-heading': headings[i], class: typeof cell === 'number' || /^-?[\d.]+(e-?\d+)?( ± .*| \(.*\))?( !)?$/.test(cell) ? 'number' : null},
+    element('td', {'data-heading': headings[i], class: typeof cell === 'number' || /^-?[\d.]+(e-?\d+|×10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?( ± .*| \(.*\))?( !)?$/.test(cell) ? 'number' : null},
       cell instanceof Node ? cell : String(cell ?? '-')))));
   return element('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},
     element('table', {}, element('caption', {}, caption), element('thead', {}, element('tr', {}, ...head)),

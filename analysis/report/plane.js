@@ -154,7 +154,7 @@ function planeSpec(rows, title) {
     params: [{name: 'brush', select: {type: 'interval', encodings: ['x', 'y']}}],
     mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, opacity: 1, cursor: 'pointer'},
     encoding: {...place,
-      color: {field: 'mean', type: 'quantitative', title: wrapped(title, document.getElementById('plane-chart')), scale: {scheme: 'cividis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
+      color: {field: 'mean', type: 'quantitative', title: wrapped(title, document.getElementById('plane-chart')), scale: {scheme: 'cividis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0, tickCount: 4, labelOverlap: 'greedy'}},
       ...(grid ? {stroke: {value: 'white'}} : {stroke: {condition: {test: isChosen, value: '#D40000'}, value: '#606060'}, strokeWidth: {condition: {test: isChosen, value: 4}, value: 1}}),
       tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
   }];

@@ -33,6 +33,7 @@ struct accuracy_option {
                        the option is chosen for a time only. Else 0 */
   double mean;      /* of an extrapolated one that of the finest level with runs */
   int64_t n;        /* seeds of this mean */
+  bool borrowed;    /* mean and deviation are those of the finest level, as the setting has no run */
   bool learned;     /* mean and deviation of all runs of the store, not of the study alone */
   double within;    /* the error that is allowed: the campaign's, or its share of |mean|; NaN for a time */
   bool share;       /* of a share, whose intervals in tables are wider than Student's */

@@ -264,6 +264,7 @@ static status take_option(struct accuracy_finding *finding, const struct converg
 
   struct accuracy_option option = {.own = row->base,
                                    .extrapolated = extrapolated,
+                                   .borrowed = extrapolated,
                                    .open = row->at_least,
                                    .error = row->error,
                                    .point = row->point};
@@ -346,6 +347,7 @@ static status learn(const struct accuracy_finding *finding, struct accuracy_opti
     if (runs.n < ACCURACY_FEWEST_SEEDS)
       continue;
     here.mean = runs.mean;
+    here.borrowed = false;
     here.n = (int64_t)runs.n;
     here.deviation = runs.standard_deviation;
     here.within = accuracy_allowed(finding->campaign, here.mean);

@@ -305,6 +305,13 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     words_print(stdout, "",
                 "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
                 "point_cpu: by the runs of the study, mean over the points. run_cost: against the smallest error");
+    bool borrowed = false;
+    for (size_t i = 0; i < accuracy.count; i++)
+      borrowed |= accuracy.options[i].borrowed;
+    if (borrowed)
+      words_print(stdout, "",
+                  "A setting finer than any level of the study has no runs here: its mean and scatter are those of the "
+                  "finest level.");
     if (*accuracy.marked && accuracy.chosen < accuracy.count)
       words_print(stdout, "", "Left out, as their runs are in doubt (!) by a word that few of the scene's own have: %s",
                   accuracy.marked);

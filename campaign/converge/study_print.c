@@ -292,7 +292,8 @@ static status print_sentence(const struct printing *printing, size_t from, size_
   for (struct ask_part part; ask_parts_next(&parts, &part);) {
     if (part.point != ladder->point[level] || !(part.error > 0 || (part.open && part.error == 0 && told->error > 0)))
       continue;
-    fprintf(out, "%s%s %s", before, part.knob, part.error > 0 ? study_show_error(part.error, part.open, text) : ">= 0");
+    fprintf(out, "%s%s %s", before, part.knob,
+            part.error > 0 ? study_show_error(fmin(part.error, told->error), part.open, text) : ">= 0");
     sum += part.error;
     before = ", ";
   }

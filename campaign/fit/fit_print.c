@@ -440,11 +440,12 @@ static void tell_errors(const struct fit *fit, FILE *out) {
     if (!isnan(fit->observed->data[k].resolution) || !(r->half_width > 0) || r->verdict == ASK_RESOLUTION_KNOWN)
       continue;
     observed_label(fit->observed, k, label, sizeof label);
-    words_print(
-        out, "",
-        "RESOLUTION: %s %s with resolution; the study in the store tells an error of at least %.2g, which is in the "
-        "intervals.",
-        label, r->verdict == ASK_RESOLUTION_DIVERGES ? "does not converge" : "has no limit in sight", r->half_width);
+    words_print(out, "",
+                "RESOLUTION: %s %s; the study in the store tells an error of at least %.2g, which is in the intervals.",
+                label,
+                r->verdict == ASK_RESOLUTION_DIVERGES ? "does not converge"
+                                                      : "has at least one knob in which no limit is seen",
+                r->half_width);
   }
 }
 
