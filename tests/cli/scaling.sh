@@ -15,7 +15,7 @@ store: discs.db
 YAML
 expect 0 "$clast" run discs.yaml -j 2 --quiet
 expect 0 "$clast" scaling discs.db
-says "marked (!), "
+says "marked (!), $(number discs.db "select sum(warnings like '%cut%') || ' of ' || count(*) from runs") runs: cut"
 grep -qE '^(No crossing|Not one curve|Too few)' out || fail "an exponent from three seeds of tiny discs"
 says "84 runs, sizes by diameter"
 

@@ -16,6 +16,7 @@ served() {
     sleep 0.05
   done
   [ -n "$port" ] || fail "no port: $(cat serve.err)"
+  ! grep -q "other machines" serve.err || fail "a port of this machine alone is called open to others"
   url=http://127.0.0.1:$port
 }
 ended() { # ended EXIT TEXT: SIGTERM ends the server, and it says so
