@@ -51,7 +51,8 @@ static const struct field rows[] = {
     REAL(grain.spacing, "m", 0.01069, 1e-9, 1e5, .label = "spacing of the grains",
          .doc =
              "Grid constant of the random lattice: the mean size of a grain. The default gives about 1100 grains in a "
-             "disc of 0.4 m.",
+             "disc of 0.4 m. A block has body.columns times body.rows of them, so that it shrinks with the spacing; "
+             "the knob `grains` of `clast converge` keeps its sides.",
          .source = "K99 table 1 (number of polygons)"),
     REAL(grain.disorder, "1", 1, 0, 1,
          .doc = "a over spacing: each grid square has one random point, uniform in the concentric square of side a. 0 "
