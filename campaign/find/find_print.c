@@ -367,7 +367,12 @@ static void write_more(const struct find *find) {
       before = &find->width[i];
   const size_t needed = runs_needed(find, before);
   const bool beyond = needed > FIND_MOST_RUNS || find->most >= FIND_MOST_RUNS;
-  const char *why = width > find_widest(find) ? "The interval is wider than asked" : "One crossing is not sure";
+  char why[200] = "One crossing is not sure";
+  if (width > find_widest(find) && find->relative)
+    snprintf(why, sizeof why, "The interval is %.3g %% of the %sbracket, wider than the %.3g %% asked", 100 * width,
+             find->logarithmic ? "logarithm of the " : "", 100 * find->within);
+  else if (width > find_widest(find))
+    snprintf(why, sizeof why, "The interval is wider than asked");
   if (find->runs < find->most)
     text_append(text, SENTENCE, "%s, and no round fits into the rest of the %zu runs", why, find->most);
   else
