@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/converge/accuracy.h"
 #include "campaign/document/campaign.h"
 #include "campaign/launch/launch.h"
 #include "campaign/print/print.h"
@@ -98,7 +99,7 @@ void help_one(const struct command *command, FILE *out); /* what `clast help COM
 /* `clast plan` for `clast run --dry-run`: loads a campaign, plans it and prints the plan. store NULL: the campaign's.
  * slots 0: one per core. */
 status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
-                     bool no_trial, bool json, struct error *error);
+                     bool no_trial, enum accuracy_print print, struct error *error);
 
 /* An option of several commands: what is pooled. */
 #define COMMANDS_BY(type_, member_)                                                                                    \

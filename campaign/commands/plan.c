@@ -1,16 +1,16 @@
 /* `clast plan CAMPAIGN`: predicts the runs and the cost of a campaign. */
 #include "campaign/commands/commands.h"
-#include "campaign/converge/accuracy.h"
 
 struct options {
   struct campaign_option campaign;
   const char *store;
   int64_t slots;
-  bool no_trial, json;
+  bool no_trial, all, json;
 };
 
 status plan_campaign(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
-                     bool no_trial, bool json, struct error *error) {
+                     bool no_trial, enum accuracy_print print, struct error *error) {
+  const bool json = print == ACCURACY_JSON;
   CAMPAIGN campaign = NULL;
   OWNED char *alternatives = NULL;
   const int at_a_time = launch_slots(slots);
@@ -19,8 +19,7 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
   TRY(option_load_campaign(path, changes, at_a_time, &campaign, error));
   struct plan plan;
   struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = at_a_time, .all = json};
-  TRY(accuracy_settle(campaign, words, store ? store : campaign->store, json ? ACCURACY_JSON : ACCURACY_TEXT,
-                      &alternatives, error));
+  TRY(accuracy_settle(campaign, words, store ? store : campaign->store, print, &alternatives, error));
   TRY(plan_make(campaign, &options, &plan, error));
   plan.alternatives = alternatives;
   alternatives = NULL;
@@ -32,7 +31,10 @@ status plan_campaign(const char *path, const struct campaign_option *changes, co
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   return plan_campaign(line->arguments[0], &options->campaign, options->store, options->slots, options->no_trial,
-                       options->json, error);
+                       options->json  ? ACCURACY_JSON
+                       : options->all ? ACCURACY_ALL
+                                      : ACCURACY_TEXT,
+                       error);
 }
 
 static const struct option_row rows[] = {
@@ -40,6 +42,7 @@ static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 1000000, "0"),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL),
     OPTION_ROW_FLAG("no-trial", 0, struct options, no_trial),
+    OPTION_ROW_FLAG("all", 'a', struct options, all),
     OPTION_ROW_FLAG("json", 0, struct options, json),
 };
 

@@ -14,7 +14,10 @@ static status run(const struct command_line *line, struct error *error) {
   const char *path = line->arguments[0];
   if (options->dry_run)
     return plan_campaign(path, &options->campaign, options->store, options->launch.slots, false,
-                         line->format == TABLE_JSON, error);
+                         line->format == TABLE_JSON  ? ACCURACY_JSON
+                         : line->format == TABLE_ALL ? ACCURACY_ALL
+                                                     : ACCURACY_TEXT,
+                         error);
   CAMPAIGN campaign = NULL;
   TRY(option_load_campaign(path, &options->campaign, launch_slots(options->launch.slots), &campaign, error));
   const char *store = options->store ? options->store : campaign->store;

@@ -44,8 +44,8 @@ struct accuracy_option {
   double run_s;     /* processor time of a run, s: mean over the points */
   double cpu_s;     /* processor time of one point (`seeds` runs), s; NaN when seeds is 0 */
 
-  char marks[ACCURACY_MARKS]; /* of the level's runs, of an extrapolated one those of the finest: "3 of 4 runs of the
-                                 study: cut"; "": none */
+  char marks[ACCURACY_MARKS]; /* of the level's runs, of an extrapolated one those of the finest: "3 of 4 runs:
+                                 cut"; "": none */
 };
 
 struct accuracy {
@@ -80,11 +80,11 @@ double accuracy_least(const struct accuracy *accuracy, double point_s, bool *ope
  * accuracy, or the time is too short for each. */
 status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error);
 
-enum accuracy_print { ACCURACY_SILENT, ACCURACY_NOTE, ACCURACY_TEXT, ACCURACY_JSON };
+enum accuracy_print { ACCURACY_SILENT, ACCURACY_NOTE, ACCURACY_TEXT, ACCURACY_ALL, ACCURACY_JSON };
 
 /* Calls accuracy_find and accuracy_apply if the campaign has the key `accuracy`. Before it applies the chosen option it
- * prints a sentence about it on stderr, or all options on stdout, or makes *json of them, malloc'd: an array, for a
- * time followed by members of the object that has it. json: NULL, unless asked for. */
+ * prints a sentence about it on stderr, or all options on stdout (ALL: with every column), or makes *json of them,
+ * malloc'd: an array, for a time followed by members of the object that has it. json: NULL, unless asked for. */
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, enum accuracy_print print,
                        char **json, struct error *error);
 

@@ -213,8 +213,8 @@ static status is_marked(struct accuracy_finding *finding, int64_t point, bool *i
   *is = false;
   if (here.runs == 0) /* of an extrapolated level: those of the finest stay */
     return STATUS_OK;
-  snprintf(finding->marks, sizeof finding->marks, here.count ? "%" PRId64 " of %" PRId64 " runs of the study:" : "",
-           here.doubtful, here.runs);
+  snprintf(finding->marks, sizeof finding->marks, here.count ? "%" PRId64 " of %" PRId64 " runs:" : "", here.doubtful,
+           here.runs);
   for (size_t k = 0; k < here.count; k++) {
     int64_t there = 0;
     text_append(finding->marks, sizeof finding->marks, "%s %s", k ? "," : "", here.word[k].word);

@@ -116,12 +116,12 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
   if (campaign->accuracy_of_value)
     table_column(table, "within", unit);
   table_column(table, "error", unit);
-  table_column(table, "known", NULL);
   if (guessed)
     table_column(table, "beyond", unit);
   table_column(table, "seeds", NULL);
   table_column(table, "total", unit);
   table_column(table, "run_cpu", "s");
+  table_column(table, "known", NULL);
   table_column(table, "point_cpu", "s");
   table_column(table, "run_cost", NULL);
   for (size_t i = 0; i < accuracy->count; i++) {
@@ -139,9 +139,6 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
       table_text(table, study_show_error(option->error, option->open, text));
     else
       table_real(table, option->error);
-    table_text(table, option->open           ? option->error > 0 ? "at least" : "none seen"
-                      : option->extrapolated ? "extrapolated"
-                                             : "yes");
     if (guessed)
       table_real(table, rounded(people, 2, option->beyond));
     if (option->seeds)
@@ -149,9 +146,12 @@ static status print_alternatives(const struct accuracy *accuracy, const struct c
     else
       table_missing(table);
     table_real(table, rounded(people, 2, option->total));
-    const double costs[] = {option->run_s, option->cpu_s, option->run_s / reference->run_s};
-    for (size_t c = 0; c < sizeof costs / sizeof costs[0]; c++)
-      table_real(table, rounded(people, 3, costs[c]));
+    table_real(table, rounded(people, 3, option->run_s));
+    table_text(table, option->open           ? option->error > 0 ? "at least" : "none seen"
+                      : option->extrapolated ? "extrapolated"
+                                             : "yes");
+    table_real(table, rounded(people, 3, option->cpu_s));
+    table_real(table, rounded(people, 3, option->run_s / reference->run_s));
   }
   return table_end(table, error);
 }
@@ -294,17 +294,19 @@ status accuracy_settle(struct campaign *campaign, const char *path, const char *
     TRY(alternatives_json(&accuracy, campaign, json, error));
   if (print == ACCURACY_NOTE)
     print_choice(&accuracy, campaign, "clast: ", true, stderr);
-  if (print == ACCURACY_TEXT) {
+  if (print == ACCURACY_TEXT || print == ACCURACY_ALL) {
     char width[64];
     if (isnan(accuracy.point_s))
       words_print(stdout, "accuracy  ", "%s within %s%s", campaign->accuracy_quantity,
                   show_width(campaign, width, sizeof width),
                   campaign->accuracy_of_value ? ": each setting by its own mean, column within" : "");
     print_choice(&accuracy, campaign, "accuracy  ", false, stdout);
-    TRY(print_alternatives(&accuracy, campaign, TABLE_TEXT, stdout, error));
-    words_print(stdout, "",
-                "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
-                "point_cpu: by the runs of the study, mean over the points. run_cost: against the smallest error");
+    TRY(print_alternatives(&accuracy, campaign, print == ACCURACY_ALL ? TABLE_ALL : TABLE_BARE, stdout, error));
+    words_print(
+        stdout, "",
+        "error: how far finer settings may move it. total: with the 95 %% interval over seeds. run_cpu, "
+        "point_cpu: by the runs of the study, mean over the points. run_cost: against the smallest error. `clast plan "
+        "--all` has every column");
     bool borrowed = false;
     for (size_t i = 0; i < accuracy.count; i++)
       borrowed |= accuracy.options[i].borrowed;

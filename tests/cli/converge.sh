@@ -216,7 +216,7 @@ assert all(a['point_cpu'] is None or a['point_cpu'] >= chosen['point_cpu'] for a
 PY
 ok "the plan takes the cheapest alternative"
 expect 0 "$clast" plan sharp.yaml
-prints "chosen"; prints "seeds a point"; prints "not studied, and not in this error: grains, integrator"; prints "in doubt (!)"; prints "runs of the study: cut" # as at its own settings
+prints "chosen"; prints "seeds a point"; prints "not studied, and not in this error: grains, integrator"; prints "in doubt (!)"; prints "runs: cut" # as at its own settings
 expect 0 "$clast" run sharp.yaml -j 2 --csv
 # The end of the run says whether the runs keep what the study promised.
 expect 0 "$clast" stats sharp.db --campaign sharp -Q largest_fraction --csv
@@ -602,7 +602,7 @@ store: coarse.db
 YAML
 expect 0 "$clast" converge coarse.yaml --knob grains=10.69mm,5mm,2mm --seeds 3 --within off
 expect 65 "$clast" plan coarse.yaml
-says "Levels whose runs are in doubt do not count: grains = 0.002 m (3 of 3 runs of the study: step"
+says "Levels whose runs are in doubt do not count: grains = 0.002 m (3 of 3 runs: step"
 says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob grains=0.004m,0.002m,0.001m,0.01069m\`"
 expect 65 "$clast" plan coarse.yaml --set 'fidelity.time_step=1 us'
 says "\`clast converge coarse.yaml --set fidelity.time_step='1.25e-07 s' --knob" # one --set of an input
