@@ -53,6 +53,8 @@ static status open_kind(struct store *store, const struct engine_kind *kind, str
   TRY(sql_prepare_insert(store->db, &entry->insert, table.name, "run_id", kind->results, 1, adding_run, error));
   TRY(sql_integerf(store->db, &filled, error, "SELECT EXISTS (SELECT 1 FROM \"%w\")", table.name));
   entry->first = filled == 0;
+  TRY(sql_integerf(store->db, &entry->pointed, error, "SELECT EXISTS (SELECT 1 FROM point WHERE engine = %Q)",
+                   kind->name));
   digest_names_make(&store->outcome_names, "run", &outcome_table);
   digest_names_make(&store->estimate_names, "estimate", &estimates_table);
   digest_names_make(&entry->names, table.name, kind->results);
@@ -260,6 +262,8 @@ static status add_point(struct store *store, int64_t campaign_id, const struct s
   struct store_kind *kind = NULL;
   TRY(find_kind(store, scene->kind, &kind, &grown, error));
   TRY(find_or_add_point(store, scene, point_id, error));
+  grown |= !kind->pointed;
+  kind->pointed = 1;
   if (campaign_id > 0) {
     TRY(sql_prepare_once(store->db, &store->campaign_point,
                          "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)", adding_point,

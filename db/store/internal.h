@@ -203,7 +203,8 @@ enum { STORE_BATCH_ROWS = 500 };
 
 struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
-  bool first; /* no run of this engine is stored yet: the views have no columns for its results */
+  bool first;      /* no run of this engine is stored yet: the views have no columns for its results */
+  int64_t pointed; /* 0: no point of this engine is stored yet, so that column_doc has not its unit of masses */
   sqlite3_stmt *insert;
   struct digest *names; /* digest_names_make() */
 };
