@@ -249,9 +249,10 @@ static void print_choice(const struct accuracy *accuracy, const struct campaign 
                 "too, and takes more seeds if they are needed",
                 option->n);
   if (*accuracy->place && accuracy->some_studied)
-    words_print(out, before,
-                "other points have errors and means of their own, which may be wider: the table at the end of the run "
-                "tells them");
+    words_print(
+        out, before,
+        "other points have errors and means of their own, which may be wider; the table at the end of the run has "
+        "`?` for the error of a point that no study has");
   if (*accuracy->widest_point)
     words_print(out, before, "%s", accuracy->widest_point);
   if (!in_time)
