@@ -486,8 +486,8 @@ static void write_estimates(struct view *view) {
 
 /* ---- making them ---- */
 
-/* A mass of a run in the plane is per metre of thickness. Tables for all engines have the unit of this store's points.
- */
+/* A mass of a run in the plane is per metre of thickness. Tables for all engines have the unit of this store's points;
+ * only `sph` has ejecta. */
 static status document_masses(sqlite3 *db, struct error *error) {
   char plane[300] = "''";
   for (size_t i = 0; i < engine_count(); i++)
@@ -496,7 +496,8 @@ static status document_masses(sqlite3 *db, struct error *error) {
   return sql_executef(db, "documenting masses", error,
                       "UPDATE column_doc SET unit = (SELECT CASE min(engine IN (%s)) + max(engine IN (%s)) WHEN 2 THEN "
                       "'kg/m' WHEN 1 THEN 'kg or kg/m' ELSE 'kg' END FROM point) "
-                      "WHERE table_name NOT GLOB 'result_*' AND unit IN ('kg', 'kg/m', 'kg or kg/m')",
+                      "WHERE table_name NOT GLOB 'result_*' AND table_name <> 'ejecta' AND unit IN ('kg', 'kg/m', 'kg "
+                      "or kg/m')",
                       plane, plane);
 }
 
